@@ -119,6 +119,7 @@ install(DIRECTORY python/desert_comparison DESTINATION ${DESERT_BIN_DESTINATION}
 install(DIRECTORY launch rviz icons DESTINATION ${DESERT_SHARE_DESTINATION} USE_SOURCE_PERMISSIONS)
 if(DESERT_WITH_ROS)
   install(FILES nav_core_plugins.xml nodelet_plugins.xml rviz_plugins.xml DESTINATION ${DESERT_SHARE_DESTINATION})
-  catkin_install_python(PROGRAMS scripts/demo_headless.py scripts/demo_rover.py scripts/rover_rviz.py
+  catkin_install_python(PROGRAMS scripts/demo_headless.py scripts/demo_rover.py scripts/start_rviz.py
+    scripts/teleop.py scripts/check_launch_arguments.py
     DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
 endif()

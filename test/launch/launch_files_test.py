@@ -67,6 +67,28 @@ class LaunchFiles(unittest.TestCase):
         self.assertEqual((p["/desert_sim/scenario"], p["/desert_sim/run/acceleration"]), ("wadi", 1))
         self.assertNotIn("/desert_sim/grid/from_raster", parameters(config_of("bringup.launch")))
 
+    def test_the_demo_is_slow_unless_one_says_how_fast(self):
+        def pace(*arguments):
+            p = parameters(config_of("demo.launch", *arguments))
+            return tuple(p.get("/desert_sim/" + key) for key in ("run/acceleration", "run/time_step", "step_rate"))
+        self.assertEqual(pace(), (0.1, 0.01, 10))
+        self.assertEqual(pace("rate:=5"), (None, None, 5))
+        self.assertEqual(pace("rate:=0"), (None, None, 0))
+        self.assertEqual(pace("acceleration:=2"), (2, 0.2, 10))
+        self.assertEqual(pace("acceleration:=2", "time_step:=0.5"), (2, 0.5, 10))
+        self.assertEqual(pace("acceleration:=0"), (0, None, 10))
+        self.assertEqual(pace("scenario:=rover_barchans"), (None, None, 10), "the scenario has a pace")
+
+    def test_the_demo_begins_with_crescents(self):
+        def settings(*arguments):
+            return parameters(config_of("demo.launch", *arguments))["/desert_sim/settings"]
+        crescents, = settings()
+        key, value = crescents.split("=", 1)
+        file = yaml.safe_load(value)[1]["raster"]["file"]
+        self.assertEqual((key, os.path.isfile(file)), ("terrain", True), crescents)
+        self.assertEqual(settings("settings:=[wind.speed=7]"), ["wind.speed=7"])
+        self.assertEqual(settings("scenario:=wadi"), [])
+
     def test_folders_with_spaces(self):
         with tempfile.TemporaryDirectory(prefix="a folder ") as folder:
             path = os.path.join(folder, "my rover.yaml")
@@ -78,7 +100,7 @@ class LaunchFiles(unittest.TestCase):
             self.assertNotIn("lidar", p["/rover/robot_description"], "the model is that of the file, too")
             self.assertEqual(shlex.split(node_of(config, "rviz").args)[:2], ["--config", path])
             demo = node_of(config_of("demo.launch", "rviz_config:=" + path), "rviz")
-            self.assertEqual(shlex.split(demo.args)[:2], ["-d", path])
+            self.assertEqual(shlex.split(demo.args)[:2], ["--config", path])
 
 
 if __name__ == "__main__":

@@ -1,0 +1,31 @@
+#pragma once
+/// Where a rover can start: a place that it can drive off from.
+
+#include <optional>
+#include <string>
+
+#include "src/rover/rover.hpp"
+
+namespace desert_sim {
+
+/// Why a rover that is put there could not drive off; empty if it can. A copy of it stands there, and drives
+/// some of its lengths ahead and, from the same place, back: nothing may stop it, and it may not slide where
+/// it stands.
+std::string start_problem(const Rover& rover, double x, double y, double yaw, const GroundSource& ground);
+
+/// Rectangle of the terrain's frame in which a start is looked for [m].
+struct StartArea {
+  double x = 0, y = 0;  ///< its middle
+  double width = 0, height = 0;
+};
+
+struct StartPlace {
+  double x = 0, y = 0;  ///< [m]
+};
+
+/// The place nearest to the middle of the area from which the rover can drive off, on a raster whose spacing
+/// is the rover's length; none if there is none.
+std::optional<StartPlace> nearest_start(const Rover& rover, const StartArea& area, double yaw,
+                                        const GroundSource& ground);
+
+}  // namespace desert_sim
