@@ -14,6 +14,8 @@ namespace {
 
 constexpr double lengths = 3;        // that it drives ahead, and back
 constexpr double longest_test = 60;  // [s], of a slow rover
+constexpr double wide_room = 10;     // lengths of free ground around it
+constexpr double gentle_deg = 20;    // steepest free ground
 constexpr double interval = 0.2;     // between two looks at the copy [s]
 
 bool is_well(RoverCondition condition) {
@@ -39,16 +41,53 @@ std::string why_it_stops(Rover rover, double speed, double way, const GroundSour
                       : "";
 }
 
-/// Cheaper than start_problem(), for places that are plainly none: unknown, under water, occupied, or steep.
-bool may_be_a_start(const RoverParameters& p, double x, double y, const GroundSource& ground) {
-  const double half = p.wheelbase / 2;
-  const auto east = ground.elevation(x + half, y), west = ground.elevation(x - half, y),
-             north = ground.elevation(x, y + half), south = ground.elevation(x, y - half);
-  if (!east || !west || !north || !south) return false;
-  const double tangent = std::hypot(*east - *west, *north - *south) / p.wheelbase;
-  if (tangent > std::tan(std::min(p.tip_roll_deg, p.tip_pitch_deg) * pi / 180)) return false;
-  const GroundPoint point = ground.at(x, y);
-  return !(point.obstacle > 0) && point.water <= p.max_water;
+/// Whether the ground is known, dry, unoccupied and gentle at all points within `room` [m], on a raster.
+/// Cheaper than start_problem().
+bool is_free_ground(const RoverParameters& p, double x, double y, double room, const GroundSource& ground) {
+  const double half = length_of(p) / 2, steepest = std::tan(gentle_deg * pi / 180);
+  const int count = static_cast<int>(room / (2 * half));
+  for (int j = -count; j <= count; ++j) {
+    for (int i = -count; i <= count; ++i) {
+      const double px = x + 2 * half * i, py = y + 2 * half * j;
+      const auto east = ground.elevation(px + half, py), west = ground.elevation(px - half, py),
+                 north = ground.elevation(px, py + half), south = ground.elevation(px, py - half);
+      if (!east || !west || !north || !south) return false;
+      if (std::hypot(*east - *west, *north - *south) > steepest * 2 * half) return false;
+      const GroundPoint point = ground.at(px, py);
+      if (point.obstacle > 0 || point.water > p.max_water) return false;
+    }
+  }
+  return true;
+}
+
+/// The nearest place with so much room, in the middle of a raster whose spacing is the rover's length.
+std::optional<StartPlace> nearest_with_room(const Rover& rover, const StartArea& area, double yaw,
+                                            double room, const GroundSource& ground) {
+  const double spacing = length_of(rover.parameters());
+  const int across = static_cast<int>(area.width / 2 / spacing),
+            along = static_cast<int>(area.height / 2 / spacing);
+  std::optional<StartPlace> best;
+  double nearest = std::numeric_limits<double>::infinity();
+  const auto consider = [&](int i, int j) {
+    const double distance = spacing * std::hypot(i, j), x = area.x + spacing * i, y = area.y + spacing * j;
+    if (std::abs(i) > across || std::abs(j) > along || distance >= nearest) return;
+    if (!is_free_ground(rover.parameters(), x, y, room, ground)) return;
+    if (!start_problem(rover, x, y, yaw, ground).empty()) return;
+    best = StartPlace{x, y, room};
+    nearest = distance;
+  };
+  // Square after square around the middle, until all that follow are farther away than what is found.
+  for (int ring = 0; ring <= std::max(across, along) && spacing * ring < nearest; ++ring) {
+    for (int n = -ring; n <= ring; ++n) {
+      consider(n, -ring);
+      if (ring > 0) consider(n, ring);
+    }
+    for (int n = 1 - ring; n <= ring - 1; ++n) {
+      consider(-ring, n);
+      consider(ring, n);
+    }
+  }
+  return best;
 }
 
 }  // namespace
@@ -70,31 +109,24 @@ std::string start_problem(const Rover& rover, double x, double y, double yaw, co
 
 std::optional<StartPlace> nearest_start(const Rover& rover, const StartArea& area, double yaw,
                                         const GroundSource& ground) {
-  const double spacing = length_of(rover.parameters());
-  const int across = static_cast<int>(area.width / 2 / spacing),
-            along = static_cast<int>(area.height / 2 / spacing);
-  std::optional<StartPlace> best;
-  double nearest = std::numeric_limits<double>::infinity();
-  const auto consider = [&](int i, int j) {
-    const double distance = spacing * std::hypot(i, j), x = area.x + spacing * i, y = area.y + spacing * j;
-    if (std::abs(i) > across || std::abs(j) > along || distance >= nearest) return;
-    if (!may_be_a_start(rover.parameters(), x, y, ground) || !start_problem(rover, x, y, yaw, ground).empty())
-      return;
-    best = StartPlace{x, y};
-    nearest = distance;
-  };
-  // Square after square around the middle, until all that follow are farther away than what is found.
-  for (int ring = 0; ring <= std::max(across, along) && spacing * ring < nearest; ++ring) {
-    for (int n = -ring; n <= ring; ++n) {
-      consider(n, -ring);
-      if (ring > 0) consider(n, ring);
-    }
-    for (int n = 1 - ring; n <= ring - 1; ++n) {
-      consider(-ring, n);
-      consider(ring, n);
-    }
+  for (const double room : {wide_room * length_of(rover.parameters()), 0.0})
+    if (const auto place = nearest_with_room(rover, area, yaw, room, ground)) return place;
+  return std::nullopt;
+}
+
+Start choose_start(const Rover& rover, const StartArea& area, std::optional<double> x,
+                   std::optional<double> y, double yaw, const GroundSource& ground) {
+  const StartPlace asked{x.value_or(area.x), y.value_or(area.y), 0};
+  if (x || y) {
+    const std::string problem = start_problem(rover, asked.x, asked.y, yaw, ground);
+    return {asked, problem.empty() ? "" : "it may not be able to drive off: " + problem, !problem.empty()};
   }
-  return best;
+  const std::optional<StartPlace> free = nearest_start(rover, area, yaw, ground);
+  if (!free) return {asked, "the terrain has no place from which it could drive ahead and back", true};
+  const double distance = std::hypot(free->x - area.x, free->y - area.y);
+  if (distance == 0) return {*free, "", false};
+  return {*free, "the nearest free ground, " + number_text(distance) + " m from the middle of the terrain",
+          false};
 }
 
 }  // namespace desert_sim

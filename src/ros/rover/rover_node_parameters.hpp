@@ -78,8 +78,8 @@ constexpr auto parameter_table(const RoverNodeParameters*) {
       parameter("publish_description", &P::publish_description,
                 "Whether it sets robot_description, in its namespace."),
       parameter("x", &P::x, -1e9, 1e9, "m",
-                "Start in the terrain's frame; left out: the middle of the terrain, and without y, too, the "
-                "place nearest to it from which the rover can drive ahead and back."),
+                "Start in the terrain's frame; left out: the middle of the terrain, or without y, too, the "
+                "free ground nearest to it, from which the rover can drive ahead and back."),
       parameter("y", &P::y, -1e9, 1e9, "m", "Start in the terrain's frame; left out: as for x."),
       parameter("yaw_deg", &P::yaw_deg, -360, 360, "deg", "Heading at the start, counter-clockwise from +x."),
       parameter("looseness", &P::looseness, looseness_sources,

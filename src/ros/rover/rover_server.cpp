@@ -231,29 +231,20 @@ void RoverServer::measure(const MapGround& ground, const ros::Time& stamp, std::
 
 void RoverServer::start_where_it_begins(const MapGround& ground) {
   const MapInfo& info = ground.maps().info();
-  const StartArea area{info.origin_x + info.width * info.cell_size / 2,
-                       info.origin_y + info.height * info.cell_size / 2, info.width * info.cell_size,
-                       info.height * info.cell_size};
-  const double yaw = setup_.node.yaw_deg * pi / 180;
-  StartPlace start{setup_.node.x.value_or(area.x), setup_.node.y.value_or(area.y)};
-  const bool given = setup_.node.x || setup_.node.y;
-  const std::string problem = start_problem(rover_, start.x, start.y, yaw, ground);
-  const std::optional<StartPlace> free =
-      given || problem.empty() ? std::nullopt : nearest_start(rover_, area, yaw, ground);
-  if (free) start = *free;
+  const double yaw = setup_.node.yaw_deg * pi / 180, width = info.width * info.cell_size,
+               height = info.height * info.cell_size;
+  const StartArea area{info.origin_x + width / 2, info.origin_y + height / 2, width, height};
+  const Start start = choose_start(rover_, area, setup_.node.x, setup_.node.y, yaw, ground);
   try {
-    apply(rover_event::Place{start.x, start.y, yaw, true, info.step});
+    apply(rover_event::Place{start.place.x, start.place.y, yaw, true, info.step});
     start_problem_.clear();
-    const std::string place = point_text(start.x, start.y);
-    if (free)
-      ROS_INFO(
-          "The rover starts at %s m, the place nearest to the middle from which it can drive off (in the "
-          "middle: "
-          "%s).",
-          place.c_str(), problem.c_str());
-    else if (!problem.empty())
-      ROS_WARN("The rover starts at %s m, from where it may not drive off: %s.", place.c_str(),
-               problem.c_str());
+    if (start.remark.empty()) return;
+    const std::string text =
+        "The rover starts at " + point_text(start.place.x, start.place.y) + " m: " + start.remark;
+    if (start.is_bad)
+      ROS_WARN("%s", text.c_str());
+    else
+      ROS_INFO("%s", text.c_str());
   } catch (const ConfigError& e) {
     if (start_problem_ != e.what()) ROS_ERROR("%s", e.what());
     start_problem_ = e.what();

@@ -30,8 +30,8 @@ TEST(StartPlace, BesideACliffThatHasTheMiddle) {
   const auto place = nearest_start(rover_of(), field, 0, steep);
   ASSERT_TRUE(place);
   const double distance = std::hypot(place->x, place->y);
-  EXPECT_GT(distance, 6);
-  EXPECT_LT(distance, 6 + 4 * 0.6) << "no farther than it needs to drive ahead and back";
+  EXPECT_GT(distance, 6 + 10 * 0.6 - 0.6) << "with room around it";
+  EXPECT_LT(distance, 6 + 10 * 0.6 * std::sqrt(2) + 0.6) << "but not farther";
   EXPECT_EQ(start_problem(rover_of(), place->x, place->y, 0, steep), "");
 }
 
@@ -45,10 +45,43 @@ TEST(StartPlace, NotWhereSandIsTooLooseToClimb) {
   EXPECT_LT(place->x, -5);
 }
 
+TEST(StartPlace, NotOnASummit) {
+  const SmoothGround ground([](double x, double y) { return -2 * std::max(std::hypot(x, y) - 3, 0.0); });
+  EXPECT_EQ(start_problem(rover_of(), 0, 0, 0, ground), "") << "its top is wide enough to drive on";
+  const SmoothGround hill([](double x, double y) {
+    const double r = std::hypot(x, y);
+    return r < 3 ? 6 : r < 6 ? 6 - 2 * (r - 3) : 0.0;
+  });
+  const auto below = nearest_start(rover_of(), field, 0, hill);
+  ASSERT_TRUE(below);
+  EXPECT_GT(std::hypot(below->x, below->y), 6);
+  EXPECT_GT(below->room, 5);
+  const auto above = nearest_start(rover_of(), field, 0, ground);
+  ASSERT_TRUE(above) << "where there is no better place";
+  EXPECT_EQ(above->room, 0);
+}
+
 TEST(StartPlace, NoneWhereAllIsSteep) {
   const SmoothGround ground(plane(50));
   EXPECT_FALSE(nearest_start(rover_of(), field, 0, ground));
   EXPECT_NE(start_problem(rover_of(), 0, 0, 0, ground).find("it tipped over"), std::string::npos);
+}
+
+TEST(StartPlace, SaysWhereItStartsAndWhy) {
+  const SmoothGround level(flat());
+  const SmoothGround hill(
+      [](double x, double y) { return std::hypot(x, y) < 6 ? 2 * (6 - std::hypot(x, y)) : 0.0; });
+  EXPECT_EQ(choose_start(rover_of(), field, {}, {}, 0, level).remark, "");
+  const Start beside = choose_start(rover_of(), field, {}, {}, 0, hill);
+  EXPECT_NE(beside.remark.find("the nearest free ground, 1"), std::string::npos) << beside.remark;
+  EXPECT_FALSE(beside.is_bad);
+  const Start given = choose_start(rover_of(), field, -5.5, 0, 0, hill);
+  EXPECT_EQ(given.place.x, -5.5) << "one gets what one asks for";
+  EXPECT_TRUE(given.is_bad);
+  EXPECT_NE(given.remark.find("it may not be able to drive off: "), std::string::npos) << given.remark;
+  EXPECT_EQ(choose_start(rover_of(), field, 8.5, {}, 0, hill).place.y, 0) << "y is that of the middle";
+  const SmoothGround steep(plane(50));
+  EXPECT_TRUE(choose_start(rover_of(), field, {}, {}, 0, steep).is_bad);
 }
 
 TEST(StartPlace, OnTheTerrainWithRoomToDrive) {

@@ -271,6 +271,39 @@ TEST(RoverLockstep, ANodeThatIsKilledStartsSanely) {
   EXPECT_EQ(process->end(SIGTERM), 0);
 }
 
+TEST(RoverLockstep, WithoutAPlaceItStartsWhereItCanDriveOff) {
+  begin_anew();
+  desert_sim::EditTerrain::Request tower;  // in the middle, which is (12, 12)
+  tower.layer = "bedrock";
+  tower.shape = "circle";
+  tower.merge = "add";
+  tower.center.x = tower.center.y = 12;
+  tower.radius = 2.5;
+  tower.inner = 1;
+  tower.value = 4;
+  ASSERT_TRUE(call<desert_sim::EditTerrain>("edit_terrain", tower).success);
+  ASSERT_TRUE(step(1).success);
+  const std::string name = "/beside";
+  ros::param::set(name + "/clock", std::string("lockstep"));
+  ros::param::set(name + "/seconds_per_sim_second", 2);
+  ros::param::set(name + "/answer_timeout", 600.0);
+  ros::param::set(name + "/publish_tf", false);
+  node_test::ChildProcess process({DESERT_ROVER_BINARY, "__name:=beside", "odom:=/beside/odom",
+                                   "imu:=/beside/imu", "joint_states:=/beside/joint_states",
+                                   "ground_truth:=/beside/ground_truth", "cmd_vel:=/beside/cmd_vel"});
+  ASSERT_TRUE(node_test::wait_until(
+      [&] { return ros::service::exists(name + "/drive", false) && drive(name, 0.2, 0).success; }));
+  node_test::Listener<nav_msgs::Odometry> truth("/beside/ground_truth");
+  const auto start = truth.last().pose.pose.position;
+  EXPECT_GT(std::hypot(start.x - 12, start.y - 12), 2.5) << "not on the tower";
+  EXPECT_LT(std::hypot(start.x - 12, start.y - 12), 6) << "but near to it";
+  ASSERT_TRUE(step(5).success);
+  EXPECT_TRUE(
+      truth.wait_for([&](const nav_msgs::Odometry& o) { return o.pose.pose.position.x > start.x + 0.5; }));
+  EXPECT_EQ(process.end(SIGTERM), 0);
+  begin_anew();
+}
+
 TEST(RoverLockstep, BadParametersEndANodeWithTheirNames) {
   const std::string name = "/bad";
   ros::param::del(name);
