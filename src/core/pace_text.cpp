@@ -32,7 +32,7 @@ std::string spoken_time(double seconds) {
     // What rounds to 1 is one.
     const double amount = seconds / unit.seconds;
     if (!(amount >= 0.9995)) continue;
-    const std::string number = number_text(amount);
+    const std::string number = number_text(amount >= 10 ? std::round(amount) : amount);
     return number == "1" ? unit.one : number + " " + unit.symbol;
   }
   return seconds >= 0.001 ? number_text(1000 * seconds) + " ms" : number_text(seconds) + " s";

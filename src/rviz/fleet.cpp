@@ -4,29 +4,39 @@
 #include <ros/master.h>
 #include <ros/message_traits.h>
 #include <ros/names.h>
+#include <ros/this_node.h>
 
+#include <optional>
 #include <utility>
 
 namespace desert_sim {
 
 namespace {
 
-/// The topics NAME/status of a type below a namespace, as the names; false if the master does not answer.
-template <class Status>
-bool find_names(const std::string& space, std::set<std::string>& names) {
-  XmlRpc::XmlRpcValue request, response, topics;
-  request[0] = "/desert_sim";
+using Topics = std::map<std::string, std::string>;  // types by name
+
+/// The topics that somebody publishes below a namespace; none if the master does not answer.
+std::optional<Topics> published_topics(const std::string& space) {
+  XmlRpc::XmlRpcValue request, response, list;
+  request[0] = ros::this_node::getName();
   request[1] = space;
-  if (!ros::master::execute("getPublishedTopics", request, response, topics, false)) return false;
+  if (!ros::master::execute("getPublishedTopics", request, response, list, false)) return std::nullopt;
+  Topics topics;
+  for (int n = 0; n < list.size(); ++n) topics[list[n][0]] = static_cast<std::string&>(list[n][1]);
+  return topics;
+}
+
+/// The names of the nodes whose topic status has this type.
+template <class Status>
+std::set<std::string> nodes_with(const Topics& topics) {
   const std::string end = "/status";
-  for (int n = 0; n < topics.size(); ++n) {
-    const std::string topic = topics[n][0], type = topics[n][1];
-    const bool fits =
-        topic.size() > end.size() && topic.compare(topic.size() - end.size(), end.size(), end) == 0;
-    if (fits && type == ros::message_traits::datatype<Status>())
-      names.insert(topic.substr(0, topic.size() - end.size()));
+  std::set<std::string> names;
+  for (const auto& [topic, type] : topics) {
+    const std::size_t size = topic.size() < end.size() ? 0 : topic.size() - end.size();
+    if (type == ros::message_traits::datatype<Status>() && topic.substr(size) == end)
+      names.insert(topic.substr(0, size));
   }
-  return true;
+  return names;
 }
 
 }  // namespace
@@ -36,20 +46,15 @@ Fleet::Fleet(const ros::NodeHandle& node, std::function<void(const RoverNames&)>
     : node_(node), found_(std::move(found)), heard_(std::move(heard)) {}
 
 void Fleet::look(const std::string& node) {
-  const std::string space = ros::names::parentNamespace(node);
-  std::set<std::string> rover_nodes, planners;
-  if (!find_names<RoverStatus>(space, rover_nodes) || !find_names<PlannerStatus>(space, planners)) return;
+  const std::optional<Topics> topics = published_topics(ros::names::parentNamespace(node));
+  if (!topics) return;
   RoverNames rovers;
-  for (const std::string& rover_node : rover_nodes) rovers.insert(ros::names::parentNamespace(rover_node));
+  for (const std::string& name : nodes_with<RoverStatus>(*topics))
+    rovers.insert(ros::names::parentNamespace(name));
   if (rovers != rovers_) found_(rovers_ = rovers);
-  listen_to(planners);
-  bool heard = true;
-  {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    heard = commands_ && commands_.getNumSubscribers() > 0;
-  }
+  listen_to(nodes_with<PlannerStatus>(*topics));
   // A new master knows nothing of a publisher of the old one.
-  if (!heard && rovers_.count(chosen_) > 0) connect();
+  if (rovers_.count(chosen_) > 0 && topics->count(chosen_ + "/cmd_vel") == 0) connect();
 }
 
 void Fleet::forget() {
