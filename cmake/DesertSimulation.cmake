@@ -1,4 +1,5 @@
 # The simulation: all that DESERT_PARTS=client leaves out. Libraries, one a part, and programs.
+include(cmake/DesertInstructions.cmake) # DESERT_ONLY_INSTRUCTIONS
 include(cmake/DesertPresets.cmake) # config/species, climates, rovers and growth_curves, in desert_core
 
 # ---- Libraries: one a part, sources by folder ---------------------------------------------------
@@ -6,6 +7,7 @@ desert_library(desert_physics SEPARATE FOLDERS kernels
   LINK PUBLIC desert_base OpenMP::OpenMP_CXX desert::random123 PRIVATE desert::fftw3f)
 if(TARGET desert_physics)
   target_compile_options(desert_physics PRIVATE ${DESERT_PHYSICS_OPTIONS})
+  target_compile_definitions(desert_physics PRIVATE ${DESERT_ONLY_INSTRUCTIONS})
   set_source_files_properties(kernels/avalanching/avalanching.cpp kernels/avalanching/tile.cpp kernels/sand/saltation.cpp
     kernels/water/hydraulic_erosion.cpp kernels/water/virtual_pipes.cpp kernels/wind/wind.cpp
     PROPERTIES COMPILE_OPTIONS "${DESERT_UNSWITCH_OPTIONS}")

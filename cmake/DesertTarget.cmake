@@ -2,7 +2,8 @@
 include(GNUInstallDirs)
 
 option(DESERT_WERROR "Warnings are errors" ON)
-option(DESERT_UNITY_BUILD "Compile sources eight at a time where that takes half as long" ON)
+option(DESERT_UNITY_BUILD "Compile sources many at a time where that takes half as long" ON)
+option(DESERT_PORTABLE "Compile the loops of the physics for all processors; OFF: for the one that builds" ON)
 option(DESERT_NATIVE "Use the instructions of the CPU that builds (-march=native); results stay the same bits" OFF)
 
 set(DESERT_SANITIZE "" CACHE STRING "Sanitizers for all of the project's own code: address,undefined or thread")
@@ -166,7 +167,7 @@ function(desert_summary)
     endif()
   endforeach()
   string(REPLACE ";" ", " parts "${parts}")
-  message(STATUS "desert_sim ${PROJECT_VERSION}, ${CMAKE_BUILD_TYPE}: CPU on, ${parts}")
+  message(STATUS "desert_sim ${PROJECT_VERSION}, ${CMAKE_BUILD_TYPE}: CPU on (${DESERT_INSTRUCTIONS_ABOUT}), ${parts}")
   get_property(left_out GLOBAL PROPERTY DESERT_LEFT_OUT)
   if(left_out)
     string(REPLACE ";" ", " left_out "${left_out}")

@@ -6,6 +6,7 @@
 #include <new>
 
 #include "kernels/backend/exec.hpp"
+#include "kernels/backend/instruction_set.hpp"
 #include "src/core/error.hpp"
 #include "src/core/host_memory.hpp"
 
@@ -41,7 +42,10 @@ void for_each_chunk(std::size_t bytes, int threads, const Work& work) {
 
 }  // namespace
 
-CpuExec::CpuExec(int threads) : threads_(threads > 0 ? threads : omp_get_num_procs()) {}
+CpuExec::CpuExec(int threads) : threads_(threads > 0 ? threads : omp_get_num_procs()) {
+  const std::string problem = problem_with_instructions();
+  if (!problem.empty()) throw ConfigError(problem);
+}
 
 std::string CpuExec::device_name() const {
   std::ifstream info("/proc/cpuinfo");

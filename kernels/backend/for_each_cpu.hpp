@@ -7,59 +7,15 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
-#include <string>
 #include <vector>
 
 #include "kernels/backend/for_each.hpp"
+#include "kernels/backend/instruction_set.hpp"
 #include "kernels/base/quanta.hpp"
 
 namespace desert_sim {
 
-// ---- Instruction sets: inner loops are compiled for several ones, and the widest that the processor has is
-// chosen at run time. The compiler fuses no multiplication with an addition on any of them
-// (-ffp-contract=off), so all give the same bits. An explicit fused() is one instruction on all but the
-// baseline.
-
-enum class InstructionSet { baseline, avx2, avx512 };
-
-inline InstructionSet widest_instructions() {
-#if defined(__x86_64__)
-  __builtin_cpu_init();
-  if (!__builtin_cpu_supports("avx2") || !__builtin_cpu_supports("fma")) return InstructionSet::baseline;
-  for (bool has : {__builtin_cpu_supports("avx512f") != 0, __builtin_cpu_supports("avx512dq") != 0,
-                   __builtin_cpu_supports("avx512bw") != 0, __builtin_cpu_supports("avx512vl") != 0})
-    if (!has) return InstructionSet::avx2;
-  return InstructionSet::avx512;
-#else
-  return InstructionSet::baseline;
-#endif
-}
-/// The widest set that the processor has, or the one that the environment's variable DESERT_INSTRUCTIONS
-/// names (oldest: the baseline, or avx2) if that is less: for benchmarks of what a set brings.
-inline InstructionSet chosen_instructions() {
-  const InstructionSet widest = widest_instructions();
-  const char* const named = std::getenv("DESERT_INSTRUCTIONS");
-  if (!named) return widest;
-  if (std::string(named) == "oldest") return InstructionSet::baseline;
-  return std::string(named) == "avx2" ? std::min(widest, InstructionSet::avx2) : widest;
-}
-inline const InstructionSet instruction_set = chosen_instructions();
-
-#if defined(__x86_64__)
-#define DESERT_FOR_AVX2 __attribute__((noinline, target("avx2,fma")))
-#define DESERT_AVX512 "avx512f,avx512dq,avx512bw,avx512vl,avx2,fma"
-#define DESERT_FOR_AVX512 __attribute__((noinline, target(DESERT_AVX512)))
-#if defined(__clang__)
-#define DESERT_FOR_AVX512_MASKS DESERT_FOR_AVX2  // Clang has no attribute for the preferred width
-#else
-#define DESERT_FOR_AVX512_MASKS __attribute__((noinline, target(DESERT_AVX512 ",prefer-vector-width=256")))
-#endif
-#else
-#define DESERT_FOR_AVX2
-#define DESERT_FOR_AVX512
-#define DESERT_FOR_AVX512_MASKS
-#endif
+// ---- Loops for several sets of instructions: instruction_set.hpp
 
 template <class Work>
 void with_baseline(const Work& work) {
@@ -81,16 +37,21 @@ DESERT_FOR_AVX512 void with_avx512(const Work& work) {
 /// no faster and the wind slower; the masked instructions of AVX-512 make many laws faster.
 template <class Work>
 void with_wide_instructions(const Work& work) {
-  if (instruction_set == InstructionSet::baseline) return with_baseline(work);
-  if (instruction_set == InstructionSet::avx512) return with_avx512_masks(work);
-  with_avx2(work);
+  if constexpr (is_compiled(InstructionSet::avx512))
+    if (instruction_set == InstructionSet::avx512) return with_avx512_masks(work);
+  if constexpr (is_compiled(InstructionSet::avx2))
+    if (instruction_set == InstructionSet::avx2) return with_avx2(work);
+  if constexpr (is_compiled(InstructionSet::baseline)) with_baseline(work);
 }
 /// The same with the widest vectors, which make sweeps of tiles a third faster: these are nothing but
 /// arithmetic.
 template <class Work>
 void with_widest_instructions(const Work& work) {
-  if (instruction_set == InstructionSet::avx512) return with_avx512(work);
-  with_wide_instructions(work);
+  if constexpr (is_compiled(InstructionSet::avx512))
+    if (instruction_set == InstructionSet::avx512) return with_avx512(work);
+  if constexpr (is_compiled(InstructionSet::avx2))
+    if (instruction_set == InstructionSet::avx2) return with_avx2(work);
+  if constexpr (is_compiled(InstructionSet::baseline)) with_baseline(work);
 }
 
 /// One thread as the team that works on a tile.
