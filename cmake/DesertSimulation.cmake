@@ -38,7 +38,7 @@ desert_library(desert_render FOLDERS src/render LINK PUBLIC desert::eigen) # mes
 
 if(DESERT_WITH_IO)
   desert_library(desert_io SEPARATE FOLDERS src/io
-    LINK PUBLIC desert_core desert_render GDAL::GDAL opencv_core opencv_imgproc opencv_imgcodecs)
+    LINK PUBLIC desert_core desert_render GDAL::GDAL desert::opencv)
   target_compile_definitions(desert_io PRIVATE DESERT_WITH_NETCDF=${DESERT_WITH_NETCDF})
   if(DESERT_WITH_NETCDF)
     target_link_libraries(desert_io PRIVATE desert::netcdf)

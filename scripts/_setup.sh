@@ -41,26 +41,30 @@ source_noetic() {
 # Debian's ROS lives under /usr and takes no distribution name.
 source_noetic || unset ROS_DISTRO
 
-# The names in one column of dependencies.txt: of what builds and runs, without ROS if `core`, only for
-# DESERT_PARTS=client if `client`, and with the part `# Sanitizers` if so asked; or only those of the part `# Checks` or
-# `# Flakes`.
-packages() { # column [core | client | sanitizers | checks | flakes]
-  local parts
+# The names in one column of dependencies.txt, of the parts that somebody needs:
+#   nothing said: all that builds, runs and is tested    window: scripts/demo    film: scripts/demo --headless
+#   client: DESERT_PARTS=client    core: a build without ROS    sanitizers: all, and the part `Sanitizers`
+#   checks, flakes: the part `Checks` or `Flakes` alone
+packages() { # column [window | film | client | core | sanitizers | checks | flakes]
+  local nodes='tools|client|simulation|nodes' parts
+  local all="$nodes|kit|window|film|more|more of ROS"
   case ${2:-} in
-    core) parts='tools|building' ;;
-    client) parts='tools|client' ;;
-    sanitizers) parts='tools|client|building|ROS|Sanitizers' ;;
+    window | film) parts="$nodes|$2" ;;
+    client) parts='tools|client|kit' ;;
+    core) parts='tools|simulation|more' ;;
+    sanitizers) parts="$all|Sanitizers" ;;
     checks) parts='Checks' ;;
     flakes) parts='Flakes' ;;
-    *) parts='tools|client|building|ROS' ;;
+    '') parts=$all ;;
+    *) fail "there is no list of packages '$2'" ;;
   esac
-  awk -F'|' -v column="$1" -v parts="^# ($parts)" '
+  awk -F'|' -v column="$1" -v parts="^# ($parts):" '
     /^#/ { wanted = $0 ~ parts }
     wanted { sub(/#.*/, ""); gsub(/[ \t]/, "", $column); if ($column != "" && $column != "-") print $column }
   ' "$DESERT_ROOT/scripts/dependencies.txt"
 }
 
-missing_packages() { # column [core | client | sanitizers | checks | flakes]
+missing_packages() { # column [list, as of packages()]
   local package
   for package in $(packages "$@"); do
     dpkg-query -W -f '${Status}\n' "$package" 2>/dev/null | grep -q 'ok installed' || echo "$package"
@@ -69,7 +73,7 @@ missing_packages() { # column [core | client | sanitizers | checks | flakes]
 
 # Installs what is missing from dependencies.txt; with nothing missing it calls nothing.
 # shellcheck disable=SC2120 # arguments are optional
-desert_install() { # [core | client | sanitizers | checks | flakes]
+desert_install() { # [list, as of packages()]
   local missing as_root=()
   if [[ $DESERT_SYSTEM == 0 ]]; then
     say "this is neither Debian 12 nor Ubuntu 20.04: nothing is installed. Needed, by their Debian names:"
@@ -82,9 +86,12 @@ desert_install() { # [core | client | sanitizers | checks | flakes]
     command -v sudo >/dev/null || fail "missing packages, and no sudo to install them. As root: apt-get install ${missing[*]}"
     as_root=(sudo)
   fi
-  say "installing ${missing[*]}"
-  as_root+=(env DEBIAN_FRONTEND=noninteractive apt-get -q -o Acquire::Retries=3)
+  as_root+=(env DEBIAN_FRONTEND=noninteractive LC_ALL=C apt-get -q -o Acquire::Retries=3)
   "${as_root[@]}" update || say "apt-get update failed; trying with the package lists at hand"
+  say "installing ${missing[*]}"
+  # What comes with them: "0 upgraded, 674 newly installed, ...", "Need to get 343 MB ...", "After this operation, ...".
+  { "${as_root[@]}" install --assume-no --no-install-recommends "${missing[@]}" || true; } 2>/dev/null |
+    sed -nE '/newly installed|^Need to get|^After this/s/^/== /p'
   if ! "${as_root[@]}" install -y --no-install-recommends "${missing[@]}"; then
     [[ $DESERT_SYSTEM == 2 && ! -r $ROS_SETUP ]] &&
       say "ROS Noetic's packages need its apt source: see http://wiki.ros.org/noetic/Installation/Ubuntu"
@@ -105,6 +112,10 @@ desert_configure() { # [-DNAME=VALUE]...
 desert_build() { # [--target NAME]...
   say "building ${*:-all}"
   cmake --build "$BUILD" -j "${DESERT_JOBS:-$(nproc)}" "$@"
+}
+
+desert_has_target() { # name
+  cmake --build "$BUILD" --target help | grep -qE "(^|[ .])$1(:|\$)"
 }
 
 free_port() {

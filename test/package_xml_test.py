@@ -19,6 +19,8 @@ RULES = os.path.join(HERE, "rosdep_rules.yaml")
 WITHOUT_RULE = {"librandom123-dev", "libcli11-dev"}
 # A package of ROS there, of Debian here: the same library.
 OF_ROS = {"libompl-dev": "ompl"}
+# rosdep knows libopencv-dev alone, which brings these.
+OF_OPENCV = {"libopencv-core-dev", "libopencv-imgproc-dev", "libopencv-imgcodecs-dev"}
 # Of dependencies.txt, what a workspace has already, or only tests, checks and other tools of ours use.
 OF_EVERY_WORKSPACE = {"g++", "make", "ninja-build", "cmake", "pkg-config"}
 OF_TESTS = {"python3-netcdf4", "python3-xarray", "snakemake", "munge", "slurmctld", "slurmd", "slurm-client", "xvfb",
@@ -93,6 +95,7 @@ class PackageXml(unittest.TestCase):
 
     def installed(self, system):
         found = {package for key in keys() for package in self.rules[key].get("noetic") or self.rules[key][system]}
+        found |= OF_OPENCV if "libopencv-dev" in found else set()
         return found | {package for package, key in OF_ROS.items() if key in keys()}
 
     def test_rosdep_installs_what_the_build_needs_on_noetic(self):
