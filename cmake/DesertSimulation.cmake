@@ -55,13 +55,9 @@ if(DESERT_WITH_ROS)
     # GCC 12 takes empty functions of Boost, which clients of actions copy, for uninitialised ones.
     set_source_files_properties(src/ros/planner/planner_server.cpp
       PROPERTIES COMPILE_OPTIONS $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
-    target_precompile_headers(desert_ros PRIVATE
-      <ros/callback_queue.h> <ros/console.h> <ros/node_handle.h> <tf2_ros/buffer.h>
-      <tf2_ros/static_transform_broadcaster.h> ${PROJECT_SOURCE_DIR}/src/ros/simulation/simulation_thread.hpp)
   endif()
   # Apart from desert_ros: what registers a plugin may only be loaded by who looks for plugins.
   desert_library(desert_nodelet FOLDERS src/ros/nodelet LINK PUBLIC desert_ros)
-  desert_reuse_precompiled_header(desert_nodelet desert_ros)
   find_package(nav_core QUIET)
   find_package(costmap_2d QUIET)
   if(nav_core_FOUND AND costmap_2d_FOUND) # the plugin for move_base, which nav_core_plugins.xml names
@@ -74,12 +70,6 @@ endif()
 if(DESERT_WITH_RVIZ) # one library of all plugins, which rviz_plugins.xml names
   desert_library(desert_rviz FOLDERS src/rviz LINK PUBLIC desert_client desert_render PRIVATE desert::random123)
   desert_use_rviz(desert_rviz)
-  if(TARGET desert_rviz)
-    target_precompile_headers(desert_rviz PRIVATE
-      <OgreCamera.h> <OgreSceneNode.h> <QVBoxLayout> <QWidget> <desert_sim/SimulationStatus.h> <ros/node_handle.h>
-      <rviz/display_context.h> <rviz/properties/float_property.h> <rviz/view_manager.h>
-      ${PROJECT_SOURCE_DIR}/include/desert_sim/client/terrain_client.hpp)
-  endif()
 endif()
 
 # ---- Programs -----------------------------------------------------------------------------------
@@ -107,9 +97,12 @@ if(DESERT_WITH_ROS)
   desert_program(desert_sim_node SOURCE src/ros/node/desert_sim_node.cpp LINK desert_ros)
   desert_program(desert_rover_node SOURCE src/ros/rover/desert_rover_node.cpp LINK desert_ros)
   desert_program(desert_planner_node SOURCE src/ros/planner/desert_planner_node.cpp LINK desert_ros)
-  foreach(node IN ITEMS desert_sim_node desert_rover_node desert_planner_node)
-    desert_reuse_precompiled_header(${node} desert_ros)
-  endforeach()
+endif()
+
+# ---- What scripts/demo builds; with a display desert_rviz, too ------------------------------------
+if(DESERT_WITH_ROS)
+  add_custom_target(demo)
+  add_dependencies(demo desert_sim_node desert_rover_node desert_planner_node ${PROJECT_NAME}_generate_messages)
 endif()
 
 # ---- Install, beside libraries, programs and config/ ---------------------------------------------

@@ -83,10 +83,10 @@ function(desert_link target)
   endforeach()
 endfunction()
 
-# desert_unity(<target>): eight of its sources become one translation unit, because most of their compile time goes into
-# headers and templates that all of them use.
-function(desert_unity target)
-  set_target_properties(${target} PROPERTIES UNITY_BUILD ${DESERT_UNITY_BUILD} UNITY_BUILD_BATCH_SIZE 8)
+# desert_unity(<target> <count>): so many of its sources become one translation unit, because most of their compile time
+# goes into headers and templates that all of them use.
+function(desert_unity target count)
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ${DESERT_UNITY_BUILD} UNITY_BUILD_BATCH_SIZE ${count})
 endfunction()
 
 # desert_library(<target> [STATIC] [SEPARATE [<regex>]] FOLDERS <folder>... [EXCLUDE <regex>]
@@ -120,21 +120,11 @@ function(desert_library target)
   desert_target(${target})
   desert_link(${target} ${arg_LINK})
   if(NOT "SEPARATE" IN_LIST arg_KEYWORDS_MISSING_VALUES)
-    desert_unity(${target})
+    desert_unity(${target} 24) # without a precompiled header, which would take as long as two of these units
     if(arg_SEPARATE)
       list(FILTER sources INCLUDE REGEX ${arg_SEPARATE})
       set_source_files_properties(${sources} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
     endif()
-  endif()
-endfunction()
-
-# desert_reuse_precompiled_header(<target> <library>): GCC refuses a header precompiled with -fPIC where -fPIE is asked
-# for, so that programs are compiled as libraries are.
-function(desert_reuse_precompiled_header target library)
-  if(TARGET ${target} AND TARGET ${library})
-    set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE OFF)
-    target_compile_options(${target} PRIVATE -fPIC)
-    target_precompile_headers(${target} REUSE_FROM ${library})
   endif()
 endfunction()
 

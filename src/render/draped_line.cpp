@@ -8,7 +8,7 @@ namespace desert_sim::render {
 namespace {
 
 constexpr double pi = 3.14159265358979323846;
-constexpr double most_places = 4096;
+constexpr double most_points = 4096;
 
 }  // namespace
 
@@ -27,7 +27,7 @@ std::vector<Point> drape(const HeightField& field, const std::vector<Place>& lin
   const auto put = [&](const Place& p) { points.emplace_back(p.x, p.y, field.height_at(p)); };
   double length = 0;
   for (std::size_t n = 1; n < line.size(); ++n) length += distance(line[n - 1], line[n]);
-  const double room = std::max(1.0, most_places - static_cast<double>(line.size()) - 1);
+  const double room = std::max(1.0, most_points - static_cast<double>(line.size()) - 1);
   const double spacing = std::max(field.cell_size, length / room);
   for (std::size_t n = 0; n + 1 < line.size(); ++n) {
     const Place &a = line[n], &b = line[n + 1];
