@@ -1,7 +1,7 @@
 # With DESERT_PORTABLE=OFF the loops of the physics are compiled for one set of instructions, the widest of the processor
 # that builds, which takes half the time: DESERT_ONLY_INSTRUCTIONS is the definition that says so.
 set(DESERT_ONLY_INSTRUCTIONS "")
-set(DESERT_INSTRUCTIONS_ABOUT "for all processors")
+set(DESERT_CPU_ABOUT " (for all processors)")
 if(NOT DESERT_PORTABLE)
   try_run(instructions_run instructions_compiled ${PROJECT_BINARY_DIR} ${PROJECT_SOURCE_DIR}/cmake/widest_instructions.cpp
     CMAKE_FLAGS -DINCLUDE_DIRECTORIES=${PROJECT_SOURCE_DIR} -DCMAKE_CXX_STANDARD=17
@@ -11,5 +11,5 @@ if(NOT DESERT_PORTABLE)
   endif()
   unset(instructions_run CACHE) # looked for anew by each configuration
   set(DESERT_ONLY_INSTRUCTIONS DESERT_ONLY_INSTRUCTIONS=${instructions})
-  set(DESERT_INSTRUCTIONS_ABOUT "for processors with ${instructions} only")
+  set(DESERT_CPU_ABOUT " (for processors with ${instructions} only)")
 endif()

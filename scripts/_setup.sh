@@ -115,7 +115,7 @@ desert_build() { # [--target NAME]...
 }
 
 desert_has_target() { # name
-  cmake --build "$BUILD" --target help | grep -qE "(^|[ .])$1(:|\$)"
+  cmake --build "$BUILD" --target help | grep -E "(^|[ .])$1(:|\$)" >/dev/null
 }
 
 free_port() {

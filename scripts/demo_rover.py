@@ -17,7 +17,6 @@ import numpy
 import rospy
 from desert_sim import Simulation
 from desert_sim.msg import PlannerStatus
-from desert_sim.picture import BLUE, GREEN, RED, WHITE, write_image
 from desert_sim.testing import Desert, Node
 from geometry_msgs.msg import PoseStamped
 
@@ -28,7 +27,6 @@ FORECAST_PERIOD = 100  # of the rover's time [s]: the wind is steady, and each f
 FRAMES = 10  # of the film a second, each STEPS_A_FRAME steps
 STEPS_A_FRAME = 5
 FILM_SIZE = (1280, 720)
-LEGEND = (("way driven", WHITE), ("plan", BLUE), ("goal", GREEN), ("rover", RED), ("too steep or too loose", (60, 60, 190)))
 ENDS = (PlannerStatus.ARRIVED, PlannerStatus.NO_PATH, PlannerStatus.STUCK, PlannerStatus.BURIED, PlannerStatus.TIPPED,
         PlannerStatus.TIMED_OUT, PlannerStatus.CANCELLED)
 
@@ -153,11 +151,14 @@ class Trip:
 
     def picture(self):
         """The terrain, what the rover plans and has done, and what that means."""
+        from desert_sim.picture import BLUE, GREEN, RED, WHITE  # needs OpenCV, which --live does without
+        legend = (("way driven", WHITE), ("plan", BLUE), ("goal", GREEN), ("rover", RED),
+                  ("too steep or too loose", (60, 60, 190)))
         status, slip = self.planner.status, self.slips[-1] if self.slips else 0.0
         lines = ["%3.0f s, %.0f days of wind: %s, %.0f m made, slip %.0f %%" % (
             self.time, self.time * ACCELERATION / 86400, status.state, self.length, 100 * slip),
             "%s; %d replans%s" % (forecast_text(status), *self.changes_of_mind())]
-        return self.desert.picture(self.goal).framed(FILM_SIZE, LEGEND, lines)
+        return self.desert.picture(self.goal).framed(FILM_SIZE, legend, lines)
 
     def run(self, film):
         steps = int(self.options.seconds / STEP)
@@ -188,6 +189,7 @@ class Trip:
 
 
 def run_headless(options):
+    from desert_sim.picture import write_image
     start, goal = course(options.seed)
     settings = ["run.time_step=%g" % (STEP * ACCELERATION)]
     parameters = {"backend": options.backend, "threads": 0, "frame_id": "map", "step_rate": 1 / STEP}  # of forecasts
