@@ -9,6 +9,7 @@ rover did not arrive.
 import argparse
 import math
 import random
+import signal
 import subprocess
 import sys
 import threading
@@ -236,6 +237,7 @@ def run_live(options):
 
 
 def main():
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))  # and not before the nodes have ended
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--live", action="store_true")
     parser.add_argument("--seed", type=int, default=1, help="of the course and the rover's noise")
