@@ -71,7 +71,7 @@ class LaunchFiles(unittest.TestCase):
         def pace(*arguments):
             p = parameters(config_of("demo.launch", *arguments))
             return tuple(p.get("/desert_sim/" + key) for key in ("run/acceleration", "run/time_step", "step_rate"))
-        self.assertEqual(pace(), (0.1, 0.01, 10))
+        self.assertEqual(pace(), (0.03, 0.003, 10))
         self.assertEqual(pace("rate:=5"), (None, None, 5))
         self.assertEqual(pace("rate:=0"), (None, None, 0))
         self.assertEqual(pace("acceleration:=2"), (2, 0.2, 10))
