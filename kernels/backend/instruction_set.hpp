@@ -15,8 +15,7 @@ namespace desert_sim {
 enum class InstructionSet { baseline, avx2, avx512 };
 
 constexpr const char* instruction_set_name(InstructionSet set) {
-  constexpr const char* names[] = {"baseline", "avx2", "avx512"};
-  return names[static_cast<int>(set)];
+  return set == InstructionSet::baseline ? "baseline" : set == InstructionSet::avx2 ? "avx2" : "avx512";
 }
 
 /// Whether loops are compiled for it: with DESERT_PORTABLE=OFF for one set alone.

@@ -7,7 +7,6 @@ namespace desert_sim::render {
 
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
 constexpr double most_points = 4096;
 
 }  // namespace

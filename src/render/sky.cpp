@@ -9,7 +9,6 @@ namespace desert_sim::render {
 
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
 constexpr double disc = 2 * pi / 180;  // half of the sun's width [rad]
 constexpr Colour zenith{0.33f, 0.52f, 0.78f}, horizon{0.87f, 0.87f, 0.84f}, haze{0.78f, 0.74f, 0.67f},
     glow{1.0f, 0.96f, 0.86f};

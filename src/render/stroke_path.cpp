@@ -46,7 +46,6 @@ double share_of_depth(const Capsule& capsule, double radius, double inner) {
 }
 
 double share_of_area(const Capsule& capsule, double radius) {
-  constexpr double pi = 3.14159265358979323846;
   const double length = capsule.length();
   return length > 0 ? 2 * length / (2 * length + pi * radius) : 1;
 }

@@ -8,6 +8,8 @@
 
 namespace desert_sim::render {
 
+constexpr double pi = 3.14159265358979323846;
+
 using Point = Eigen::Vector3d;
 using Box = Eigen::AlignedBox3d;
 

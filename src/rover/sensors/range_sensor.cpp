@@ -11,11 +11,11 @@ namespace {
 
 /// The patch in which a coordinate lies, and how far from where it begins [cells]. Outside the grid it is the
 /// outermost patch.
-struct Place {
+struct PatchPlace {
   int patch;
   float rest;
 
-  Place(double metres, double cell_size, int cells) {
+  PatchPlace(double metres, double cell_size, int cells) {
     const double patches = metres / cell_size + 0.5;
     const double whole = std::clamp(std::floor(patches), 0.0, static_cast<double>(cells));
     patch = static_cast<int>(whole);
@@ -25,7 +25,7 @@ struct Place {
 
 ray_march::Ray origin_of(const SceneGeometry& g, const SensorPose& pose) {
   const Eigen::Vector3d& p = pose.position;
-  const Place x(p.x() - g.origin_x, g.cell_size, g.width), y(p.y() - g.origin_y, g.cell_size, g.height);
+  const PatchPlace x(p.x() - g.origin_x, g.cell_size, g.width), y(p.y() - g.origin_y, g.cell_size, g.height);
   ray_march::Ray ray{};
   ray.u = x.rest, ray.v = y.rest;
   ray.patch_x = x.patch, ray.patch_y = y.patch;
