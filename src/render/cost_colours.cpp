@@ -15,11 +15,11 @@ constexpr CostStops present_stops{{0.98f, 0.88f, 0.30f},
                                   {0.80f, 0.10f, 0.12f},
                                   {0.66f, 0.05f, 0.30f},
                                   {0.42f, 0.05f, 0.45f}};
-constexpr CostStops forecast_stops{{0.60f, 0.85f, 0.98f},
-                                   {0.20f, 0.55f, 0.90f},
-                                   {0.10f, 0.25f, 0.75f},
-                                   {0.08f, 0.12f, 0.50f},
-                                   {0.04f, 0.05f, 0.25f}};
+constexpr CostStops forecast_stops{{0.55f, 0.95f, 0.85f},
+                                   {0.10f, 0.70f, 0.62f},
+                                   {0.02f, 0.42f, 0.40f},
+                                   {0.01f, 0.26f, 0.26f},
+                                   {0.00f, 0.10f, 0.12f}};
 
 bool is_known_cost(std::int8_t cost) { return cost >= free_cost && cost <= lethal_cost; }
 
@@ -42,7 +42,7 @@ float cost_opacity(std::int8_t cost, float opacity, int x, int y) {
 PackedColour cost_pixel(CostPalette palette, std::int8_t cost, float opacity, int x, int y) {
   const float alpha = cost_opacity(cost, opacity, x, y);
   const Colour c = is_known_cost(cost) ? cost_colour(palette, cost) : unknown_cost_colour;
-  return pack({alpha * c.r, alpha * c.g, alpha * c.b}, alpha);
+  return pack(c, alpha);
 }
 
 }  // namespace desert_sim::render

@@ -5,6 +5,7 @@
 #include <rviz/properties/enum_property.h>
 #include <rviz/properties/float_property.h>
 #include <rviz/properties/ros_topic_property.h>
+#include <rviz/properties/string_property.h>
 
 #include <pluginlib/class_list_macros.hpp>
 
@@ -24,13 +25,17 @@ DrapedMapDisplay::DrapedMapDisplay() {
       QString::fromStdString(ros::message_traits::datatype<nav_msgs::OccupancyGrid>()),
       "A map of costs, 0 ... 100. Updates are taken from the topic of the same name with _updates.", this,
       SLOT(subscribe()));
+  node_ = new rviz::StringProperty("Node", "desert_sim",
+                                   "The map lies on the ground of the display desert_sim/Terrain that shows "
+                                   "this simulator's node.",
+                                   this);
   alpha_ =
       new rviz::FloatProperty("Alpha", 0.6F, "How much of the ground's own colour the highest costs hide.",
                               this, SLOT(update_look()));
   alpha_->setMin(0);
   alpha_->setMax(1);
   colours_ = new rviz::EnumProperty("Colours", "present",
-                                    "Yellow to red for costs of now, blue for those of a forecast.", this,
+                                    "Yellow to red for costs of now, teal for those of a forecast.", this,
                                     SLOT(update_look()));
   colours_->addOption("present", static_cast<int>(CostPalette::present));
   colours_->addOption("forecast", static_cast<int>(CostPalette::forecast));
@@ -61,9 +66,7 @@ void DrapedMapDisplay::setTopic(const QString& topic, const QString&) { topic_->
 void DrapedMapDisplay::update(float, float) {
   const double begin = processor_seconds();
   take_changes();
-  const bool placed = place();
-  coat_->show(placed);
-  if (placed && legend_wanted_->getBool())
+  if (place() && legend_wanted_->getBool())
     legend_->show(getNameStd(), static_cast<CostPalette>(colours_->getOptionInt()));
   else
     legend_->hide();
@@ -88,7 +91,7 @@ void DrapedMapDisplay::subscribe() {
 void DrapedMapDisplay::unsubscribe() {
   inbox_.unsubscribe();
   map_ = {};
-  if (coat_) coat_->show(false);
+  if (coat_) coat_->hide();
   if (legend_) legend_->hide();
 }
 
@@ -107,45 +110,64 @@ void DrapedMapDisplay::take_changes() {
   });
 }
 
-/// The outermost cells stay free: the walls at the edges of a terrain would have their colours.
+/// The outermost cells stay free: the ground beyond them, and the walls at the edges of a terrain, have their
+/// colour.
 void DrapedMapDisplay::paint(const render::CellRectangle& cells) {
   const auto palette = static_cast<CostPalette>(colours_->getOptionInt());
   const float alpha = alpha_->getFloat();
   const bool unknown = unknown_->getBool();
   const render::CellRectangle inner = map_.all().grown(-1);
+  const render::PackedColour free = render::cost_pixel(palette, render::free_cost, alpha, 0, 0);
   std::vector<render::PackedColour> pixels;
   pixels.reserve(static_cast<std::size_t>(cells.width) * static_cast<std::size_t>(cells.height));
   for (int y = cells.y; y < cells.top(); ++y)
     for (int x = cells.x; x < cells.right(); ++x) {
       const std::int8_t cost = map_.at(x, y);
       const bool drawn = inner.contains(x, y) && (unknown || (cost >= 0 && cost <= render::lethal_cost));
-      pixels.push_back(drawn ? render::cost_pixel(palette, cost, alpha, x, y) : 0);
+      pixels.push_back(drawn ? render::cost_pixel(palette, cost, alpha, x, y) : free);
     }
   coat_->write(cells, pixels);
 }
 
-/// Moves the map to where tf says that its frame is; false and a status if tf does not know, or there is no
-/// map.
+/// Lays the map where tf says that its frame is. False if nothing is shown: a status says why.
 bool DrapedMapDisplay::place() {
-  if (map_.costs.empty()) return false;
-  const std::optional<Placement> corner = placement_of(map_.frame, map_.corner, *context_);
-  if (!corner) {
-    statuses_.set(StatusProperty::Error, "Transform", missing_transform("map", map_.frame, *context_));
-    return false;
+  const TerrainDisplay* const terrain = ground();
+  std::optional<Placement> corner;
+  if (!map_.costs.empty()) {
+    corner = placement_of(map_.frame, map_.corner, *context_);
+    if (corner)
+      statuses_.set(StatusProperty::Ok, "Transform", "[" + map_.frame + "]");
+    else
+      statuses_.set(StatusProperty::Error, "Transform", missing_transform("map", map_.frame, *context_));
   }
-  statuses_.set(StatusProperty::Ok, "Transform", "[" + map_.frame + "]");
-  coat_->place(*corner);
-  return true;
+  if (terrain && corner)
+    coat_->show(*terrain, *corner);
+  else
+    coat_->hide();
+  return terrain && corner;
+}
+
+/// The display of the node's terrain; null and a status if there is none.
+const TerrainDisplay* DrapedMapDisplay::ground() {
+  try {
+    const std::string node = full_name(node_->getStdString(), "node");
+    const TerrainDisplay* const terrain = terrain_display(*context_, node);
+    if (terrain)
+      statuses_.set(StatusProperty::Ok, "Ground", "of " + node);
+    else
+      statuses_.set(StatusProperty::Error, "Ground",
+                    "No enabled display desert_sim/Terrain shows the terrain of " + node +
+                        ", on which the map could lie: add one.");
+    return terrain;
+  } catch (const ConfigError& error) {
+    statuses_.set(StatusProperty::Error, "Ground", std::string(error.what()) + ". Choose another Node.");
+    return nullptr;
+  }
 }
 
 // ---- status ----
 
 void DrapedMapDisplay::report() {
-  if (terrain_display(*context_, ""))
-    statuses_.set(StatusProperty::Ok, "Ground", "of the displays desert_sim/Terrain");
-  else
-    statuses_.set(StatusProperty::Error, "Ground",
-                  "No display desert_sim/Terrain is enabled, whose ground the map could lie on: add one.");
   if (!inbox_.subscribed()) return;
   const CostMapInbox::Report report = inbox_.report();
   const std::string topic = topic_->getTopicStd();

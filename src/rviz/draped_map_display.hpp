@@ -16,9 +16,12 @@ class BoolProperty;
 class EnumProperty;
 class FloatProperty;
 class RosTopicProperty;
+class StringProperty;
 }  // namespace rviz
 
 namespace desert_sim {
+
+class TerrainDisplay;
 
 class DrapedMapDisplay : public rviz::Display {
   Q_OBJECT
@@ -53,9 +56,11 @@ class DrapedMapDisplay : public rviz::Display {
   void take_changes();
   void paint(const render::CellRectangle& cells);
   bool place();
+  const TerrainDisplay* ground();
   void report();
 
   rviz::RosTopicProperty* topic_;
+  rviz::StringProperty* node_;
   rviz::FloatProperty* alpha_;
   rviz::EnumProperty* colours_;
   rviz::BoolProperty *unknown_, *legend_wanted_;

@@ -4,7 +4,7 @@
 #include <OgreTechnique.h>
 #include <OgreTextureManager.h>
 
-#include "src/rviz/materials.hpp"
+#include "src/rviz/terrain_display.hpp"
 
 namespace desert_sim {
 
@@ -17,31 +17,23 @@ std::string coat_name() {
 
 }  // namespace
 
-GroundCoat::GroundCoat() : name_(coat_name()), ground_(materials::ground()) {}
+GroundCoat::GroundCoat() : name_(coat_name()) {}
 
 GroundCoat::~GroundCoat() {
-  show(false);
+  hide();
   if (texture_) Ogre::TextureManager::getSingleton().remove(texture_);
 }
 
 void GroundCoat::set_grid(int width, int height, double cell_size) {
+  width_ = width * cell_size;
+  height_ = height * cell_size;
   const auto w = static_cast<Ogre::uint32>(width), h = static_cast<Ogre::uint32>(height);
-  if (!texture_ || texture_->getWidth() != w || texture_->getHeight() != h) {
-    const bool shown = pass_ != nullptr;
-    show(false);
-    Ogre::TextureManager& textures = Ogre::TextureManager::getSingleton();
-    if (texture_) textures.remove(texture_);
-    texture_ = textures.createManual(name_, Ogre::ResourceGroupManager::DEFAULT_RESOURCE_GROUP_NAME,
-                                     Ogre::TEX_TYPE_2D, w, h, 0, Ogre::PF_A8B8G8R8, Ogre::TU_DEFAULT);
-    show(shown);
-  }
-  // From metres east and north of the corner to -1 … 1, as OpenGL clips.
-  Ogre::Matrix4 projection = Ogre::Matrix4::IDENTITY;
-  projection[0][0] = static_cast<Ogre::Real>(2 / (width * cell_size));
-  projection[1][1] = static_cast<Ogre::Real>(2 / (height * cell_size));
-  projection[0][3] = projection[1][3] = -1;
-  projection[2][2] = -1e-4F;  // heights do not count, but OGRE inverts the matrix
-  from_above_.setCustomProjectionMatrix(true, projection);
+  if (texture_ && texture_->getWidth() == w && texture_->getHeight() == h) return;
+  hide();
+  Ogre::TextureManager& textures = Ogre::TextureManager::getSingleton();
+  if (texture_) textures.remove(texture_);
+  texture_ = textures.createManual(name_, Ogre::ResourceGroupManager::DEFAULT_RESOURCE_GROUP_NAME,
+                                   Ogre::TEX_TYPE_2D, w, h, 0, Ogre::PF_A8B8G8R8, Ogre::TU_DEFAULT);
 }
 
 void GroundCoat::write(const render::CellRectangle& cells, const std::vector<render::PackedColour>& pixels) {
@@ -62,37 +54,38 @@ void GroundCoat::write(const render::CellRectangle& cells, const std::vector<ren
       place);
 }
 
-void GroundCoat::place(const Placement& corner) {
-  const Ogre::Affine3 scene_from_corner(corner.position, corner.orientation);
-  from_above_.setCustomViewMatrix(true, scene_from_corner.inverse());
-}
-
-void GroundCoat::show(bool shown) {
-  if (shown == (pass_ != nullptr)) return;
-  if (shown) {
-    if (texture_) add_pass();
-    return;
+void GroundCoat::show(const TerrainDisplay& terrain, const Placement& corner) {
+  if (terrain.ground_material() != ground_) {
+    hide();
+    add_to(terrain.ground_material());
   }
-  Ogre::Technique* const technique = ground_->getTechnique(0);
-  technique->removePass(pass_->getIndex());
-  pass_ = nullptr;
+  const Placement ground = terrain.corner();
+  const Ogre::Affine3 picture_from_ground = Ogre::Affine3(corner.position, corner.orientation).inverse() *
+                                            Ogre::Affine3(ground.position, ground.orientation);
+  Ogre::Matrix4 texture_from_ground = Ogre::Matrix4::IDENTITY;  // which begins in the north-west
+  for (int n = 0; n < 4; ++n) {
+    texture_from_ground[0][n] = picture_from_ground[0][n] / static_cast<Ogre::Real>(width_);
+    texture_from_ground[1][n] = -picture_from_ground[1][n] / static_cast<Ogre::Real>(height_);
+  }
+  texture_from_ground[1][3] += 1;
+  unit_->setTextureTransform(texture_from_ground);
 }
 
-void GroundCoat::add_pass() {
-  pass_ = ground_->getTechnique(0)->createPass();
-  pass_->setLightingEnabled(false);
-  pass_->setCullingMode(Ogre::CULL_NONE);
-  pass_->setSceneBlending(Ogre::SBF_ONE, Ogre::SBF_ONE_MINUS_SOURCE_ALPHA);  // multiplied already
-  pass_->setDepthWriteEnabled(false);
-  pass_->setDepthBias(-1, -0.5F);  // in front of the ground, and behind lines on it
-  Ogre::TextureUnitState* const unit = pass_->createTextureUnitState();
-  unit->setTexture(texture_);
-  unit->setTextureAddressingMode(Ogre::TextureUnitState::TAM_BORDER);
-  unit->setTextureBorderColour(Ogre::ColourValue(0, 0, 0, 0));
-  unit->setTextureFiltering(Ogre::FO_LINEAR, Ogre::FO_LINEAR, Ogre::FO_NONE);
-  unit->setProjectiveTexturing(true, &from_above_);
-  unit->setColourOperationEx(Ogre::LBX_SOURCE1, Ogre::LBS_TEXTURE);
-  unit->setAlphaOperation(Ogre::LBX_SOURCE1, Ogre::LBS_TEXTURE);
+void GroundCoat::hide() {
+  if (!ground_) return;
+  Ogre::Pass* const pass = ground_->getTechnique(0)->getPass(0);
+  pass->removeTextureUnitState(pass->getTextureUnitStateIndex(unit_));
+  ground_.reset();
+}
+
+void GroundCoat::add_to(const Ogre::MaterialPtr& ground) {
+  ground_ = ground;
+  unit_ = ground->getTechnique(0)->getPass(0)->createTextureUnitState();
+  unit_->setTexture(texture_);
+  unit_->setTextureAddressingMode(Ogre::TextureUnitState::TAM_CLAMP);
+  unit_->setTextureFiltering(Ogre::FO_POINT, Ogre::FO_LINEAR, Ogre::FO_NONE);  // smooth where it is near
+  unit_->setColourOperationEx(Ogre::LBX_BLEND_TEXTURE_ALPHA, Ogre::LBS_TEXTURE, Ogre::LBS_CURRENT);
+  unit_->setAlphaOperation(Ogre::LBX_SOURCE1, Ogre::LBS_CURRENT, Ogre::LBS_TEXTURE);
 }
 
 }  // namespace desert_sim

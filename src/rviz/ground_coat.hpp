@@ -1,9 +1,8 @@
 #pragma once
-/// A picture that lies on the ground, seen from above: one more pass of the material with which displays
-/// desert_sim/Terrain draw it. So it lies on whatever ground is drawn, moves with it, at every level of
-/// detail, and no mesh is built for it.
+/// A picture that lies on the ground, seen from above: a texture of the material with which a display
+/// desert_sim/Terrain draws it. So it moves with the ground, at every level of detail; no mesh is built for
+/// it, and none is drawn twice.
 
-#include <OgreFrustum.h>
 #include <OgreMaterial.h>
 #include <OgreTexture.h>
 
@@ -16,6 +15,8 @@
 
 namespace desert_sim {
 
+class TerrainDisplay;
+
 class GroundCoat {
  public:
   GroundCoat();
@@ -25,20 +26,21 @@ class GroundCoat {
 
   /// A picture of so many pixels, each of `cell_size` [m], and nothing on it yet.
   void set_grid(int width, int height, double cell_size);
-  /// The pixels of some cells, row by row from the south-west; their colours are multiplied by their alpha.
+  /// The pixels of some cells, row by row from the south-west. The outermost ones of the grid have to be
+  /// transparent: they are what lies on all ground beyond it.
   void write(const render::CellRectangle& cells, const std::vector<render::PackedColour>& pixels);
-  /// Where the south-west corner lies; the picture's east is its x axis.
-  void place(const Placement& corner);
-  void show(bool shown);
+  /// Shows it on this terrain and no other one, with its south-west corner here.
+  void show(const TerrainDisplay& terrain, const Placement& corner);
+  void hide();
 
  private:
-  void add_pass();
+  void add_to(const Ogre::MaterialPtr& ground);
 
   const std::string name_;
-  Ogre::MaterialPtr ground_;
-  Ogre::Pass* pass_ = nullptr;  ///< null while nothing is shown
+  Ogre::MaterialPtr ground_;                ///< on which it is shown; null: on none
+  Ogre::TextureUnitState* unit_ = nullptr;  ///< of that
   Ogre::TexturePtr texture_;
-  Ogre::Frustum from_above_;
+  double width_ = 1, height_ = 1;  ///< [m]
 };
 
 }  // namespace desert_sim

@@ -8,7 +8,7 @@ namespace desert_sim {
 
 namespace {
 
-constexpr int legend_width = 220, legend_margin = 8, text_row = 20;  // [pixels]
+constexpr int legend_width = 250, legend_margin = 8, text_row = 20;  // [pixels]
 
 QColor to_qt(const render::Colour& c) {
   return QColor::fromRgbF(static_cast<qreal>(c.r), static_cast<qreal>(c.g), static_cast<qreal>(c.b));
@@ -69,8 +69,8 @@ QImage draw(const std::string& title, render::CostPalette palette) {
     write_text(painter, {left + 20, top - 3, bar_width, text_row}, Qt::AlignLeft, text);
   };
   box(legend_margin, to_qt(cost_colour(palette, lethal_cost)), "lethal");
-  box(legend_margin + 58, to_qt(cost_colour(palette, inscribed_cost)), "inscribed");
-  box(legend_margin + 138, QBrush(to_qt(unknown_cost_colour).lighter(200), Qt::BDiagPattern), "unknown");
+  box(legend_margin + 66, to_qt(cost_colour(palette, inscribed_cost)), "inscribed");
+  box(legend_margin + 158, QBrush(to_qt(unknown_cost_colour).lighter(200), Qt::BDiagPattern), "unknown");
   return picture;
 }
 

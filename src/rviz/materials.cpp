@@ -28,9 +28,13 @@ Ogre::MaterialPtr material(const std::string& name, const SetUp& set_up) {
 
 }  // namespace
 
-Ogre::MaterialPtr ground() {
-  return material("desert_sim/ground", [](Ogre::Pass& pass) { pass.setDepthBias(-2, -1); });
+Ogre::MaterialPtr new_ground() {
+  static int count = 0;
+  return material("desert_sim/ground" + std::to_string(count++),
+                  [](Ogre::Pass& pass) { pass.setDepthBias(-2, -1); });
 }
+
+void remove(const Ogre::MaterialPtr& material) { Ogre::MaterialManager::getSingleton().remove(material); }
 
 Ogre::MaterialPtr sky() {
   return material("desert_sim/sky", [](Ogre::Pass& pass) {

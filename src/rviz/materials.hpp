@@ -6,8 +6,10 @@
 
 namespace desert_sim::materials {
 
-/// Opaque. Lies a little behind its place, so that lines on it are seen.
-Ogre::MaterialPtr ground();
+/// Opaque. Lies a little behind its place, so that lines on it are seen. A new one for each call, of which the
+/// caller takes leave by remove(): it can have textures of its own (GroundCoat, RipplesView).
+Ogre::MaterialPtr new_ground();
+void remove(const Ogre::MaterialPtr& material);
 /// Behind everything, at any depth.
 Ogre::MaterialPtr sky();
 /// Translucent by the alpha of the vertices.

@@ -29,7 +29,8 @@ MeshObject::MeshObject(Ogre::SceneNode* parent, const Ogre::MaterialPtr& materia
   using render::Vertex;
   Ogre::VertexDeclaration* const layout = mRenderOp.vertexData->vertexDeclaration;
   layout->addElement(0, offsetof(Vertex, x), Ogre::VET_FLOAT3, Ogre::VES_POSITION);
-  layout->addElement(0, offsetof(Vertex, x), Ogre::VET_FLOAT2, Ogre::VES_TEXTURE_COORDINATES);  // metres
+  layout->addElement(0, offsetof(Vertex, x), Ogre::VET_FLOAT2,
+                     Ogre::VES_TEXTURE_COORDINATES);  // metres: what lies on the ground is seen from above
   layout->addElement(0, offsetof(Vertex, normal_x), Ogre::VET_FLOAT3, Ogre::VES_NORMAL);
   layout->addElement(0, offsetof(Vertex, colour), Ogre::VET_COLOUR_ABGR, Ogre::VES_DIFFUSE);
   setMaterial(material);

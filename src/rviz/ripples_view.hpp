@@ -1,7 +1,6 @@
 #pragma once
 /// Ripples on the ground near the camera: a texture of the ground's material that follows ~micro_relief. Farther
-/// away it is averaged to nothing. The alpha of the ground's vertices says how much of it is seen, 0…1. All displays
-/// share the material: where several show terrains, all have the ripples of the wind that changed last.
+/// away it is averaged to nothing. The alpha of the ground's vertices says how much of it is seen, 0…1.
 
 #include <OgreMaterial.h>
 #include <OgreTexture.h>
@@ -17,7 +16,11 @@ namespace desert_sim {
 
 class RipplesView {
  public:
-  RipplesView();
+  /// `ground`: the material of that ground, without textures yet.
+  explicit RipplesView(Ogre::MaterialPtr ground);
+  ~RipplesView();
+  RipplesView(const RipplesView&) = delete;
+  RipplesView& operator=(const RipplesView&) = delete;
 
   /// The ripples of this topic from now on; none for an empty name.
   void subscribe(ros::NodeHandle& node, const std::string& topic);
@@ -30,8 +33,9 @@ class RipplesView {
   TopicInbox<MicroReliefState> inbox_;
   MicroReliefState::ConstPtr drawn_;  ///< the state of the tile that is shown, or being drawn
   std::future<RippleTile> tile_;
-  Ogre::MaterialPtr ground_;
-  Ogre::TexturePtr texture_;
+  const Ogre::MaterialPtr ground_;
+  const Ogre::TexturePtr texture_;
+  Ogre::TextureUnitState* light_ = nullptr;
 };
 
 }  // namespace desert_sim

@@ -19,13 +19,13 @@ namespace desert_sim {
 namespace {
 
 constexpr double longest_bar = 160;                  // [pixels]
-constexpr int scale_width = 250, scale_height = 62;  // of the picture [pixels]
-constexpr int north_x = scale_width - 36, north_y = scale_height / 2;
+constexpr int scale_width = 250, scale_height = 72;  // of the picture [pixels]
+constexpr int north_x = scale_width - 40, north_y = scale_height / 2;
 constexpr double degrees_of_radian = 180 / 3.14159265358979323846;
 
 void draw_scale(QPainter& painter, const render::ScaleBar& bar) {
   const int left = 12, bottom = scale_height - 12, pixels = static_cast<int>(std::lround(bar.pixels));
-  painter.drawText(QRect(left, 12, pixels, 22), Qt::AlignCenter | Qt::TextDontClip,
+  painter.drawText(QRect(left, 22, pixels, 22), Qt::AlignCenter | Qt::TextDontClip,
                    QString::fromStdString(render::length_text(bar.metres)));
   painter.fillRect(left, bottom - 6, pixels, 6, Qt::white);
   painter.fillRect(left + pixels / 2, bottom - 5, pixels - pixels / 2 - 1, 4, QColor(30, 30, 30));
@@ -37,12 +37,12 @@ void draw_north(QPainter& painter, double clockwise) {
   painter.rotate(clockwise);
   painter.setPen(Qt::NoPen);
   painter.setBrush(QColor(225, 60, 50));
-  const QPointF to_north[] = {{0, -13}, {-6, 4}, {0, 1}}, to_north_too[] = {{0, -13}, {6, 4}, {0, 1}};
+  const QPointF to_north[] = {{0, -18}, {-8, 9}, {0, 4}}, to_north_too[] = {{0, -18}, {8, 9}, {0, 4}};
   painter.drawPolygon(to_north, 3);
   painter.setBrush(Qt::white);
   painter.drawPolygon(to_north_too, 3);
   painter.resetTransform();
-  constexpr double beyond = 21;  // the letter stands beyond the tip, and upright
+  constexpr double beyond = 27;  // the letter stands beyond the tip, and upright
   const double angle = clockwise / degrees_of_radian;
   const QPointF letter(north_x + beyond * std::sin(angle), north_y - beyond * std::cos(angle));
   painter.setPen(Qt::white);

@@ -101,16 +101,16 @@ TerrainDisplay::~TerrainDisplay() {
   unsubscribe();
   plants_view_.reset();
   wind_view_.reset();
-  scene_.reset();
   ripples_view_.reset();
+  scene_.reset();
   sky_.reset();
 }
 
 // ---- what rviz calls ----
 
 void TerrainDisplay::onInitialize() {
-  ripples_view_ = std::make_unique<RipplesView>();
   scene_ = std::make_unique<TerrainScene>(scene_node_);
+  ripples_view_ = std::make_unique<RipplesView>(scene_->ground_material());
   level_node_ = scene_node_->createChildSceneNode();
   plants_view_ = std::make_unique<PlantsView>(level_node_);
   wind_view_ = std::make_unique<WindView>(scene_->node());
@@ -341,7 +341,7 @@ TerrainDisplay* terrain_display_in(rviz::DisplayGroup* group, const std::string&
     rviz::Display* const display = group->getDisplayAt(n);
     if (!display->isEnabled()) continue;
     auto* found = dynamic_cast<TerrainDisplay*>(display);
-    if (found && (node.empty() || found->node() == node)) return found;
+    if (found && found->node() == node) return found;
     found = terrain_display_in(dynamic_cast<rviz::DisplayGroup*>(display), node);
     if (found) return found;
   }

@@ -1,6 +1,7 @@
 #pragma once
 /// The display desert_sim/Terrain of rviz.
 
+#include <OgreSceneNode.h>
 #include <rviz/display.h>
 
 #include <memory>
@@ -8,6 +9,7 @@
 #include "src/rviz/legend.hpp"
 #include "src/rviz/map_windows.hpp"
 #include "src/rviz/overlay_properties.hpp"
+#include "src/rviz/placement.hpp"
 #include "src/rviz/plants_view.hpp"
 #include "src/rviz/ripples_view.hpp"
 #include "src/rviz/sky.hpp"
@@ -46,6 +48,10 @@ class TerrainDisplay : public rviz::Display {
   /// What tools need to know to draw on the terrain that is shown.
   std::string node() const;  ///< full name of the node that is shown; empty: none
   double vertical_exaggeration() const;
+  /// The material of the ground, whose first texture coordinates are metres east and north of the corner.
+  Ogre::MaterialPtr ground_material() const { return scene_->ground_material(); }
+  /// Where the corner of the grid is drawn in the fixed frame.
+  Placement corner() const { return {scene_node_->getPosition(), scene_node_->getOrientation()}; }
 
   double frame_milliseconds() const { return frame_milliseconds_; }
   int frame_messages() const { return frame_messages_; }
@@ -98,8 +104,7 @@ class TerrainDisplay : public rviz::Display {
   std::map<std::string, std::string> statuses_;  ///< the texts that are shown
 };
 
-/// The first enabled display of the terrain of this node, of any terrain for an empty name; null if there is
-/// none.
+/// The first enabled display of the terrain of this node, by its full name; null if there is none.
 TerrainDisplay* terrain_display(const rviz::DisplayContext& context, const std::string& node);
 
 }  // namespace desert_sim

@@ -35,11 +35,12 @@ render::Box rough_box(const render::CellRectangle& cells, double cell_size,
 }  // namespace
 
 TerrainScene::TerrainScene(Ogre::SceneNode* parent)
-    : parent_(parent), node_(parent->createChildSceneNode()) {}
+    : parent_(parent), node_(parent->createChildSceneNode()), ground_material_(materials::new_ground()) {}
 
 TerrainScene::~TerrainScene() {
   blocks_.clear();
   node_->getCreator()->destroySceneNode(node_);
+  materials::remove(ground_material_);
 }
 
 void TerrainScene::set_grid(int width, int height, double cell_size, const render::LayerWindow& window) {
@@ -126,7 +127,7 @@ void TerrainScene::show(int number, const render::TerrainBlock& meshes) {
     if (!object) object = std::make_unique<MeshObject>(node_, material, type);
     object->set_mesh(mesh);
   };
-  put(block.ground, meshes.ground, materials::ground(), RenderOperation::OT_TRIANGLE_LIST);
+  put(block.ground, meshes.ground, ground_material_, RenderOperation::OT_TRIANGLE_LIST);
   put(block.water, meshes.water, materials::translucent(), RenderOperation::OT_TRIANGLE_LIST);
   put(block.contours, meshes.contours, materials::translucent(), RenderOperation::OT_LINE_LIST);
   block.triangles = static_cast<std::int64_t>(meshes.ground.indices.size() / 3);

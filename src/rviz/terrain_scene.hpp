@@ -49,6 +49,8 @@ class TerrainScene {
   Counts counts() const;
   /// The node whose frame is the grid's corner, with heights exaggerated.
   Ogre::SceneNode* node() const { return node_; }
+  /// With which this ground alone is drawn.
+  const Ogre::MaterialPtr& ground_material() const { return ground_material_; }
 
  private:
   struct Block {
@@ -68,6 +70,7 @@ class TerrainScene {
   void show(int block, const render::TerrainBlock& meshes);
 
   Ogre::SceneNode *const parent_, *const node_;
+  const Ogre::MaterialPtr ground_material_;
   render::TerrainGrid grid_;
   render::LayerWindow window_, batch_window_;  ///< the newest values; those of the batch that is being built
   render::TerrainLook look_;

@@ -112,6 +112,15 @@ TEST_F(DrapedDisplays, AMapLiesOnTheGroundWhereItsCellsAre) {
   display->setEnabled(false);
   window_->run_frames(2);
   EXPECT_FALSE(is_lethal(pixel(10, 10)));
+  display->setEnabled(true);
+  ASSERT_TRUE(window_->run_until([&] { return number(display, "maps") == 1; }));
+  window_->remove(terrain_);
+  window_->run_frames(3);
+  EXPECT_EQ(status(display, "Ground").level, StatusProperty::Error) << status(display, "Ground").text;
+  terrain_ = show(node_, "/draped", side);
+  window_->look_from_above(0.5 * side, 0.5 * side, scale);
+  window_->run_frames(3);
+  EXPECT_TRUE(is_lethal(pixel(10, 10))) << "it lies on the ground that came back";
 }
 
 TEST_F(DrapedDisplays, AMapIsPlacedByItsFrameAndSaysWhatIsMissing) {

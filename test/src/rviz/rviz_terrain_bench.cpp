@@ -1,9 +1,11 @@
 // Frames per second and milliseconds per frame of the display desert_sim/Terrain under OpenGL in software,
-// while a keyframe comes in and while updates come at 10 Hz; for grids of several sizes. Needs a ROS master
-// and Xvfb:
+// while a keyframe comes in and while updates come at 10 Hz; for grids of several sizes, and with the displays
+// that lie on the ground. Needs a ROS master and Xvfb:
 //
 //     roscore & rosrun desert_sim rviz_terrain_bench [SECONDS] [SIDE]...
 
+#include <nav_msgs/OccupancyGrid.h>
+#include <nav_msgs/Path.h>
 #include <ros/ros.h>
 
 #include <algorithm>
@@ -75,6 +77,55 @@ void measure_updates(Window& window, rviz::Display* display, MadeUpNode& node, i
       number(display, "triangles"));
 }
 
+/// The costs of the whole grid, a path across it and a scale bar.
+class Draped {
+ public:
+  Draped(Window& window, const std::string& name, int side) : window_(window) {
+    maps_ = node_.advertise<nav_msgs::OccupancyGrid>(name + "/costmap", 1, true);
+    paths_ = node_.advertise<nav_msgs::Path>(name + "/path", 1, true);
+    nav_msgs::OccupancyGrid map;
+    map.header.frame_id = "map";
+    map.info.resolution = 1;
+    map.info.width = map.info.height = static_cast<std::uint32_t>(side);
+    map.info.origin.orientation.w = 1;
+    for (int y = 0; y < side; ++y)
+      for (int x = 0; x < side; ++x) map.data.push_back(static_cast<std::int8_t>((x / 8 + y / 8) % 101));
+    maps_.publish(map);
+    nav_msgs::Path path;
+    path.header.frame_id = "map";
+    path.poses.resize(static_cast<std::size_t>(side));
+    for (int n = 0; n < side; ++n) {
+      path.poses[static_cast<std::size_t>(n)].pose.position.x = n;
+      path.poses[static_cast<std::size_t>(n)].pose.position.y = 0.5 * side * (1 + 0.5 * std::sin(0.03 * n));
+    }
+    paths_.publish(path);
+    set(add("desert_sim/DrapedMap", name + "/costmap"), {"Node"}, QString::fromStdString(name));
+    set(add("desert_sim/DrapedPath", name + "/path"), {"Node"}, QString::fromStdString(name));
+    add("desert_sim/ScaleBar", "");
+    window.run_until(
+        [this] { return number(displays_[0], "maps") > 0 && number(displays_[1], "points") > 0; });
+  }
+  ~Draped() {
+    for (rviz::Display* const display : displays_) window_.remove(display);
+  }
+  Draped(const Draped&) = delete;
+  Draped& operator=(const Draped&) = delete;
+
+ private:
+  rviz::Display* add(const char* type, const std::string& topic) {
+    rviz::Display* const display = window_.manager().createDisplay(type, type, false);
+    if (!topic.empty()) display->setTopic(QString::fromStdString(topic), "");
+    display->setEnabled(true);
+    displays_.push_back(display);
+    return display;
+  }
+
+  Window& window_;
+  ros::NodeHandle node_;
+  ros::Publisher maps_, paths_;
+  std::vector<rviz::Display*> displays_;
+};
+
 void measure(Window& window, int side, double seconds) {
   const std::string name = "/bench" + std::to_string(side);
   MadeUpNode node(name);
@@ -94,6 +145,11 @@ void measure(Window& window, int side, double seconds) {
   run(window, 0.5);
   measure_updates(window, display, node, side, 64, seconds);
   measure_updates(window, display, node, side, side, seconds);
+  {
+    const Draped draped(window, name, side);
+    std::printf("with costs, a path and a scale bar on it:\n");
+    measure_updates(window, display, node, side, 64, seconds);
+  }
   window.remove(display);
 }
 
