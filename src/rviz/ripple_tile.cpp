@@ -33,12 +33,12 @@ micro_relief::Ripples ripples_of(const MicroReliefState& s, double side) {
 /// Heights [m] of the pixels of a tile.
 std::vector<float> heights_of(const micro_relief::Ripples& ripples, double side) {
   using micro_relief::RipplePatch;
-  constexpr float one = 1, none = 0;
+  constexpr float full = 1, nothing = 0;
   micro_relief::Cells cells;  // a single one, in which the wind is that high above, and nothing grows
   cells.x.periodic = cells.y.periodic = true;
   cells.rows = 1;
-  cells.turn_x = &one;
-  cells.turn_y = cells.growth = &none;
+  cells.turn_x = &full;
+  cells.turn_y = cells.growth = &nothing;
   const micro_relief::Lattice& lattice = ripples.lattice;
   std::vector<RipplePatch> patches;
   for (int j = 0; j < lattice.y.count; ++j)

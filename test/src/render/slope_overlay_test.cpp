@@ -17,11 +17,11 @@ PackedColour colour_of_45_degrees(float high) {
   look.overlay = {slope_layer, 0, high, ColourMap::signal, 1};
   const auto rising = [](int x, int) { return static_cast<float>(x); };
   const TerrainBlock block = build_terrain_block(
-      BlockLayout(33, 33), 0, 0, 1,
+      {BlockLayout(33, 33), 1, std::numeric_limits<float>::quiet_NaN()}, 0, 0,
       [&](const std::string& name, const CellRectangle& cells) {
         return name == "elevation" ? window_of(cells, rising) : CellWindow();
       },
-      look, std::numeric_limits<float>::quiet_NaN());
+      look);
   return block.ground.vertices[16 * 33 + 16].colour;
 }
 

@@ -14,20 +14,20 @@ namespace {
 
 using namespace render_test;
 
-float brightness(const Colour& c) { return (c.r + c.g + c.b) / 3; }
+float mean_channel(const Colour& c) { return (c.r + c.g + c.b) / 3; }
 
 TEST(Illumination, TheSunStandsInTheWestNorthWest) {
   const Colour level = illumination(0, 0, 1);
   for (const float channel : {level.r, level.g, level.b}) EXPECT_NEAR(channel, 1, 1e-5f);
-  EXPECT_GT(brightness(illumination(-0.5f, 0, 0.866f)), 1);
-  EXPECT_LT(brightness(illumination(0.5f, 0, 0.866f)), 0.6f);
-  EXPECT_GT(brightness(illumination(0, 0.5f, 0.866f)), brightness(illumination(0, -0.5f, 0.866f)));
+  EXPECT_GT(mean_channel(illumination(-0.5f, 0, 0.866f)), 1);
+  EXPECT_LT(mean_channel(illumination(0.5f, 0, 0.866f)), 0.6f);
+  EXPECT_GT(mean_channel(illumination(0, 0.5f, 0.866f)), mean_channel(illumination(0, -0.5f, 0.866f)));
   EXPECT_NEAR(towards_sun().norm(), 1, 1e-3);
 }
 
 TEST(Illumination, ShadeIsDarkAndBlue) {
   const Colour shade = illumination(0, 0, 1, 0);
-  EXPECT_LT(brightness(shade), 0.4f);
+  EXPECT_LT(mean_channel(shade), 0.4f);
   EXPECT_GT(shade.b, 1.1f * shade.r);
 }
 
@@ -143,7 +143,7 @@ TEST(TerrainBlock, AHillCastsItsShadowOnTheGround) {
   const Height hill = [](int x, int) { return x >= 30 && x < 34 ? 10.0f : 0.0f; };
   const TerrainBlock with = block_at_edge_of_sand(true, hill), without = block_at_edge_of_sand(false, hill);
   const auto at = [](const TerrainBlock& block, std::size_t x) {
-    return brightness(unpack(block.ground.vertices[20 * 65 + x].colour));
+    return mean_channel(unpack(block.ground.vertices[20 * 65 + x].colour));
   };
   EXPECT_LT(at(with, 40), 0.5f * at(without, 40));
   EXPECT_EQ(at(with, 60), at(without, 60));
@@ -168,7 +168,7 @@ TEST(Sky, IsBlueAbovePaleAtTheHorizonAndBrightAroundTheSun) {
   const Colour above = sky_colour({0, 0, 1}), level = sky_colour({0, 1, 0});
   EXPECT_GT(above.b, above.r + 0.2f);
   EXPECT_NEAR(level.b, level.r, 0.1f);
-  EXPECT_GT(brightness(sky_colour(towards_sun())), brightness(sky_colour(Point(1, 0, 0.7).normalized())));
+  EXPECT_GT(mean_channel(sky_colour(towards_sun())), mean_channel(sky_colour(Point(1, 0, 0.7).normalized())));
 }
 
 TEST(Sky, TheDomeSurroundsTheEyeAndEndsWithTheSun) {
