@@ -97,7 +97,7 @@ void DrapedMapDisplay::unsubscribe() {
 
 void DrapedMapDisplay::update_look() {
   if (map_.costs.empty()) return;
-  paint(map_.all());
+  paint_cells(map_.all());
   context_->queueRender();
 }
 
@@ -105,14 +105,14 @@ void DrapedMapDisplay::take_changes() {
   inbox_.take([this](const CostMap& map, const render::CellRectangle& changed, bool replaced) {
     map_ = map;
     if (replaced) coat_->set_grid(map.width, map.height, map.cell_size);
-    paint(changed);
+    paint_cells(changed);
     context_->queueRender();
   });
 }
 
 /// The outermost cells stay free: the ground beyond them, and the walls at the edges of a terrain, have their
 /// colour.
-void DrapedMapDisplay::paint(const render::CellRectangle& cells) {
+void DrapedMapDisplay::paint_cells(const render::CellRectangle& cells) {
   const auto palette = static_cast<CostPalette>(colours_->getOptionInt());
   const float alpha = alpha_->getFloat();
   const bool unknown = unknown_->getBool();

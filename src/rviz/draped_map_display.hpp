@@ -54,7 +54,7 @@ class DrapedMapDisplay : public rviz::Display {
  private:
   void unsubscribe();
   void take_changes();
-  void paint(const render::CellRectangle& cells);
+  void paint_cells(const render::CellRectangle& cells);
   bool place();
   const TerrainDisplay* ground();
   void report();

@@ -6,7 +6,6 @@
 #include <OgreTextureManager.h>
 
 #include <chrono>
-#include <utility>
 
 namespace desert_sim {
 
@@ -20,8 +19,8 @@ std::string texture_name() {
 
 }  // namespace
 
-RipplesView::RipplesView(Ogre::MaterialPtr ground)
-    : ground_(std::move(ground)),
+RipplesView::RipplesView(const Ogre::MaterialPtr& ground)
+    : ground_(ground),
       texture_(Ogre::TextureManager::getSingleton().createManual(
           texture_name(), Ogre::ResourceGroupManager::DEFAULT_RESOURCE_GROUP_NAME, Ogre::TEX_TYPE_2D,
           RippleTile::pixels, RippleTile::pixels, Ogre::MIP_UNLIMITED, Ogre::PF_BYTE_RGB,

@@ -17,7 +17,7 @@ namespace desert_sim {
 class RipplesView {
  public:
   /// `ground`: the material of that ground, without textures yet.
-  explicit RipplesView(Ogre::MaterialPtr ground);
+  explicit RipplesView(const Ogre::MaterialPtr& ground);
   ~RipplesView();
   RipplesView(const RipplesView&) = delete;
   RipplesView& operator=(const RipplesView&) = delete;
