@@ -1,8 +1,8 @@
 #pragma once
-/// The blocks that wait to be built anew, because their cells changed or another level of detail fits better, in
-/// batches: all that are in the picture when a batch begins belong to it, and are to be shown together when the last
-/// of them is built, so that a dune is never cut where blocks meet. What has no mesh yet comes first, then the near.
-/// Blocks out of sight are built in the time that is left.
+/// The blocks that wait to be built anew, because their cells changed or another level of detail fits
+/// better, in batches: all that are in the picture when a batch begins belong to it, and are to be shown
+/// together when the last of them is built, so that a dune is never cut where blocks meet. What has no mesh
+/// yet comes first, then the near. Blocks out of sight are built in the time that is left.
 
 #include <chrono>
 #include <functional>
@@ -34,9 +34,9 @@ class RebuildQueue {
 
   /// Begins a batch, of the blocks that wait and can be seen, if the last one is complete.
   void begin_batch(const View& view, const std::vector<Box>& boxes);
-  /// Calls build(block, level) for the batch, and then for what waits out of sight, until `seconds` are spent. It
-  /// stops before a block that would go beyond the time, if it takes as long as the slowest one of late. At least
-  /// one block is built in each call. Returns the number of blocks that were built.
+  /// Calls build(block, level) for the batch, and then for what waits out of sight, until `seconds` are
+  /// spent. It stops before a block that would go beyond the time, if it takes as long as the slowest one
+  /// of late. At least one block is built in each call. Returns the number of blocks that were built.
   int run(double seconds, const std::function<void(int block, int level)>& build,
           const Clock& clock = steady_seconds);
   /// Whether all blocks of the batch are built.

@@ -10,8 +10,8 @@ namespace desert_sim::render {
 Colour sky_colour(const Point& direction);
 constexpr Colour sun_disc_colour{1.0f, 1.0f, 0.96f};
 
-/// The sky as the inside of a sphere around the eye [m]; the disc of the sun is drawn last, over it, eight times as
-/// wide as the true one, so that it is seen as such.
+/// The sky as the inside of a sphere around the eye [m]; the disc of the sun is drawn last, over it, eight
+/// times as wide as the true one, so that it is seen as such.
 Mesh sky_dome(float radius);
 
 }  // namespace desert_sim::render

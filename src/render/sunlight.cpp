@@ -13,7 +13,8 @@ constexpr float sun_x = -0.760f, sun_y = 0.276f, sun_z = 0.588f;  // a unit vect
 constexpr Colour sky_light{0.30f, 0.31f, 0.35f};                  // on level ground; the rest is of the sun
 constexpr float brightest = 1.30f;
 
-// Shadows run along columns, from the west, each cell's from two of the column before: `aside` rows further north.
+// Shadows run along columns, from the west, each cell's from two of the column before: `aside` rows further
+// north.
 constexpr float aside = sun_y / -sun_x;
 static_assert(sun_x < 0 && aside >= 0 && aside <= 1);
 /// How much lower the sun's rays are a column further east, over the cell's size.

@@ -54,8 +54,8 @@ struct MaterialWindows {
     std::transform(values.begin(), values.end(), values.begin(), cover_of_depth);
     return {depth.cells(), std::move(values)};
   }
-  /// The cover around a cell, by binomial weights. The edge of sand is sharper than a cell; drawn as it is, it
-  /// follows the grid in teeth.
+  /// The cover around a cell, by binomial weights. The edge of sand is sharper than a cell; drawn as it is,
+  /// it follows the grid in teeth.
   static float smoothed(const CellWindow& cover, int x, int y) {
     float sum = 0, weights = 0;
     for (int dy = -1; dy <= 1; ++dy)
@@ -77,7 +77,8 @@ float ripples_on(float sand_cover, float normal_z, float sun) {
   return sand_cover * smooth_step(steep, gentle, normal_z) * sun;
 }
 
-/// The light on a surface of true heights that is seen with exaggerated ones; `sun`: the share that reaches it.
+/// The light on a surface of true heights that is seen with exaggerated ones; `sun`: the share that reaches
+/// it.
 Colour light_on(float normal_x, float normal_y, float normal_z, float exaggeration, float sun) {
   const float x = normal_x * exaggeration, y = normal_y * exaggeration,
               length = std::sqrt(x * x + y * y + normal_z * normal_z);

@@ -27,8 +27,8 @@ struct TerrainLook {
   bool materials = true;  ///< else all ground has the colour of sand
   bool water = true;
   bool shadows = true;  ///< cast by the ground; without, slopes that look away from the sun are dark alone
-  bool ripples =
-      false;  ///< the alpha of the ground's vertices says how much of wind ripples is seen there, 0…1; else it is 1
+  /// The alpha of the ground's vertices says how much of wind ripples is seen there, 0…1; else it is 1.
+  bool ripples = false;
   double vertical_exaggeration =
       1;  ///< of what is seen; the meshes have true heights, but the light is that of these
   double contour_interval = 0;  ///< [m]; 0: no contour lines

@@ -1,6 +1,6 @@
 #pragma once
-/// The colours of the ground by its materials, and of water by its depth: the same in rviz, in point clouds and in
-/// pictures.
+/// The colours of the ground by its materials, and of water by its depth: the same in rviz, in point clouds
+/// and in pictures.
 
 #include "src/render/colour.hpp"
 
@@ -21,8 +21,8 @@ struct SurfaceMaterials {
 /// counts as 0.
 float cover_of_depth(float depth);
 
-/// The colour of the ground without light. Rock is the darker and redder the more it resists, and moist ground is
-/// darker. NaN counts as 0.
+/// The colour of the ground without light. Rock is the darker and redder the more it resists, and moist
+/// ground is darker. NaN counts as 0.
 Colour ground_colour(const SurfaceMaterials& materials);
 
 /// The colour of water of this depth [m], without light.

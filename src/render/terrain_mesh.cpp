@@ -97,8 +97,9 @@ class BlockBuilder {
     return sum;
   }
 
-  /// Two triangles for each quad of known vertices, one where a single vertex is unknown. A quad is divided along
-  /// the diagonal whose ends look more alike, so that crests, edges of sand and shadows do not become saws.
+  /// Two triangles for each quad of known vertices, one where a single vertex is unknown. A quad is divided
+  /// along the diagonal whose ends look more alike, so that crests, edges of sand and shadows do not become
+  /// saws.
   void add_surface() {
     mesh_.indices.reserve(6 * columns_.size() * rows_.size());
     for (std::size_t row = 0; row + 1 < rows_.size(); ++row)

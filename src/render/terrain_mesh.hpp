@@ -27,9 +27,9 @@ using CellColour = std::function<PackedColour(int x, int y, float normal_x, floa
 Mesh build_block(const BlockLayout& layout, int block, int level, double cell_size, const CellWindow& surface,
                  const CellColour& colour, float base = std::numeric_limits<float>::quiet_NaN());
 
-/// The surface of water of this depth [m] above the ground, in the cells of `depth`, for build_block(): unknown where it is dry,
-/// except beside water, where it continues level into the ground, so that the shore is where both surfaces
-/// meet.
+/// The surface of water of this depth [m] above the ground, in the cells of `depth`, for build_block():
+/// unknown where it is dry, except beside water, where it continues level into the ground, so that the
+/// shore is where both surfaces meet.
 CellWindow water_surface(const CellWindow& ground, const CellWindow& depth, int level);
 
 /// Where water begins, for drawing [m].

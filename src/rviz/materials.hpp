@@ -6,8 +6,8 @@
 
 namespace desert_sim::materials {
 
-/// Opaque. Lies a little behind its place, so that lines on it are seen. A new one for each call, of which the
-/// caller takes leave by remove(): it can have textures of its own (GroundCoat, RipplesView).
+/// Opaque. Lies a little behind its place, so that lines on it are seen. A new one for each call, of which
+/// the caller takes leave by remove(): it can have textures of its own (GroundCoat, RipplesView).
 Ogre::MaterialPtr new_ground();
 void remove(const Ogre::MaterialPtr& material);
 /// Behind everything, at any depth.

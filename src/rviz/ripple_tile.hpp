@@ -1,6 +1,6 @@
 #pragma once
-/// The light on wind ripples as a picture that can be laid side by side over any sand: drawn on ground whose cells
-/// are far larger than ripples.
+/// The light on wind ripples as a picture that can be laid side by side over any sand: drawn on ground
+/// whose cells are far larger than ripples.
 
 #include <desert_sim/MicroReliefState.h>
 
@@ -16,11 +16,12 @@ struct RippleTile {
       brightness;  ///< row-major from the south-west: 128 times the light over that on level ground
 };
 
-/// Whether ripples of these two states look different: by more than 3 degrees in direction, or a twentieth in size.
+/// Whether ripples of these two states look different: by more than 3 degrees in direction, or a twentieth
+/// in size.
 bool ripples_differ(const MicroReliefState& a, const MicroReliefState& b);
 
-/// Ripples of this state's wind, by the law of kernels/micro_relief/ripples.hpp on level ground with a lattice that
-/// repeats, in the light of src/render/sunlight.hpp. Without ripples all is 128.
+/// Ripples of this state's wind, by the law of kernels/micro_relief/ripples.hpp on level ground with a
+/// lattice that repeats, in the light of src/render/sunlight.hpp. Without ripples all is 128.
 RippleTile ripple_tile(const MicroReliefState& state);
 
 }  // namespace desert_sim

@@ -26,7 +26,8 @@ RipplesView::RipplesView(const Ogre::MaterialPtr& ground)
           RippleTile::pixels, RippleTile::pixels, Ogre::MIP_UNLIMITED, Ogre::PF_BYTE_RGB,
           Ogre::TU_DYNAMIC_WRITE_ONLY | Ogre::TU_AUTOMIPMAP)) {
   Ogre::Pass* const pass = ground_->getTechnique(0)->getPass(0);
-  // The tile's light where the vertices' alpha is 1, that of level ground where it is 0; then twice that times colour.
+  // The tile's light where the vertices' alpha is 1, that of level ground where it is 0; then twice that
+  // times colour.
   light_ = pass->createTextureUnitState();
   light_->setTexture(texture_);
   light_->setTextureFiltering(Ogre::TFO_TRILINEAR);

@@ -1,6 +1,7 @@
 #pragma once
-/// Ripples on the ground near the camera: a texture of the ground's material that follows ~micro_relief. Farther
-/// away it is averaged to nothing. The alpha of the ground's vertices says how much of it is seen, 0…1.
+/// Ripples on the ground near the camera: a texture of the ground's material that follows ~micro_relief.
+/// Farther away it is averaged to nothing. The alpha of the ground's vertices says how much of it is seen,
+/// 0…1.
 
 #include <OgreMaterial.h>
 #include <OgreTexture.h>

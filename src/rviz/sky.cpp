@@ -9,7 +9,8 @@ namespace desert_sim {
 
 namespace {
 
-/// Within the far clip distance of rviz's cameras, and so far that other cameras of the scene see it as sky, too [m].
+/// Within the far clip distance of rviz's cameras, and so far that other cameras of the scene see it as
+/// sky, too [m].
 constexpr float radius = 2e4F;
 
 }  // namespace

@@ -233,8 +233,9 @@ void TerrainDisplay::update_limits() {
 
 // ---- the terrain ----
 
-/// True if layers of the newest elevation are still on their way. They come in messages of their own, a moment
-/// later; the scene waits a frame for them rather than build everything twice, and never two in a row.
+/// True if layers of the newest elevation are still on their way. They come in messages of their own, a
+/// moment later; the scene waits a frame for them rather than build everything twice, and never two in a
+/// row.
 bool TerrainDisplay::take_changes() {
   if (!source_) return false;
   const std::vector<CollectedChange> changes = source_->take();

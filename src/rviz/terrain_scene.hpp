@@ -1,6 +1,6 @@
 #pragma once
-/// The blocks of a terrain in OGRE's scene: builds those that changed, or whose distance asks for another level of
-/// detail, within a time for each frame, and shows all of a change in the same frame.
+/// The blocks of a terrain in OGRE's scene: builds those that changed, or whose distance asks for another
+/// level of detail, within a time for each frame, and shows all of a change in the same frame.
 
 #include <OgreCamera.h>
 #include <OgreSceneManager.h>
@@ -37,8 +37,8 @@ class TerrainScene {
   const render::TerrainLook& look() const { return look_; }
   void set_limits(const render::DetailLimits& limits) { limits_ = limits; }
 
-  /// Builds waiting blocks for at most `seconds`; at least one. While `hold`, no batch begins: more of the same
-  /// change is on its way.
+  /// Builds waiting blocks for at most `seconds`; at least one. While `hold`, no batch begins: more of the
+  /// same change is on its way.
   void update(const Ogre::Camera& camera, int viewport_height, double seconds, bool hold = false);
 
   struct Counts {

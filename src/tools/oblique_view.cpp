@@ -106,8 +106,8 @@ std::vector<render::TerrainBlock> blocks_of(const Snapshot& s, const std::vector
   return blocks;
 }
 
-/// The sky behind each pixel. The camera looks down, so that the horizon is not in its picture: the terrain stands before
-/// the sky as a block diagram does, from the horizon at the lower edge upwards.
+/// The sky behind each pixel. The camera looks down, so that the horizon is not in its picture: the terrain
+/// stands before the sky as a block diagram does, from the horizon at the lower edge upwards.
 std::vector<render::PackedColour> sky_behind(double camera_azimuth_deg, int width, int height) {
   constexpr double highest = 0.5;  // of the sky, at the upper edge [rad]
   const double azimuth = camera_azimuth_deg * radians + pi;

@@ -45,7 +45,8 @@ TEST(SunVisibility, LevelGroundAndGentleSlopesLieInTheSun) {
   }
 }
 
-/// A tower of one cell casts a shadow from the sun away, as long as its height over the tangent of the sun's height.
+/// A tower of one cell casts a shadow from the sun away, as long as its height over the tangent of the
+/// sun's height.
 TEST(SunVisibility, AWallCastsAShadowOfItsLengthAwayFromTheSun) {
   constexpr float height = 8;
   const CellWindow sun = sun_on_grid([](int x, int) { return x == 20 ? height : 0.0f; });

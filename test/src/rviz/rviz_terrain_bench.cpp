@@ -1,6 +1,6 @@
 // Frames per second and milliseconds per frame of the display desert_sim/Terrain under OpenGL in software,
-// while a keyframe comes in and while updates come at 10 Hz; for grids of several sizes, and with the displays
-// that lie on the ground. Needs a ROS master and Xvfb:
+// while a keyframe comes in and while updates come at 10 Hz; for grids of several sizes, and with the
+// displays that lie on the ground. Needs a ROS master and Xvfb:
 //
 //     roscore & rosrun desert_sim rviz_terrain_bench [SECONDS] [SIDE]...
 
