@@ -52,8 +52,8 @@ class RoverRviz(unittest.TestCase):
                     file.write("#!/bin/sh\necho \"$@\"\n")
                 os.chmod(rviz, 0o755)
                 environment = dict(os.environ, PATH=folder + os.pathsep + os.environ["PATH"], **environment)
-                script = os.path.join(ROOT, "scripts", "start_rviz.py")
-                return subprocess.run([script, "--config", os.path.join(ROOT, "rviz", "desert_sim.rviz"), *options],
+                command = [sys.executable, os.path.join(ROOT, "scripts", "start_rviz.py")]
+                return subprocess.run([*command, "--config", os.path.join(ROOT, "rviz", "desert_sim.rviz"), *options],
                                       env=environment, check=True, capture_output=True, text=True).stdout.split()[2:]
         self.assertEqual(command("-f", "map", LIBGL_ALWAYS_SOFTWARE="1"), ["-f", "map", "--disable-anti-aliasing"])
         self.assertEqual(command("--anti-aliasing", "on", LIBGL_ALWAYS_SOFTWARE="1"), [])

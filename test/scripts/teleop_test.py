@@ -12,7 +12,7 @@ import time
 import unittest
 
 ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..")
-SCRIPT = os.path.join(ROOT, "scripts", "teleop.py")
+COMMAND = [sys.executable, os.path.join(ROOT, "scripts", "teleop.py")]
 PATIENCE = 60 * float(os.environ.get("DESERT_PATIENCE", "1"))
 sys.path.insert(0, os.path.join(ROOT, "scripts"))
 
@@ -91,7 +91,7 @@ class OnATerminal(unittest.TestCase):
         del self.commands[:]
         self.screen, keyboard = pty.openpty()
         self.before = termios.tcgetattr(self.screen)
-        self.program = subprocess.Popen([SCRIPT, "cmd_vel:=/scout/cmd_vel", *words], stdin=keyboard,
+        self.program = subprocess.Popen([*COMMAND, "cmd_vel:=/scout/cmd_vel", *words], stdin=keyboard,
                                         stdout=keyboard, stderr=keyboard)
         os.close(keyboard)
         self.addCleanup(os.close, self.screen)
@@ -133,13 +133,13 @@ class OnATerminal(unittest.TestCase):
                 self.ends_well()
 
     def test_without_a_terminal_it_says_so(self):
-        answer = subprocess.run([SCRIPT], stdin=subprocess.DEVNULL, capture_output=True, text=True, check=False)
+        answer = subprocess.run(COMMAND, stdin=subprocess.DEVNULL, capture_output=True, text=True, check=False)
         self.assertEqual(answer.returncode, 2)
         self.assertIn("no terminal", answer.stderr)
 
     def test_parameters_out_of_range(self):
         screen, keyboard = pty.openpty()
-        answer = subprocess.run([SCRIPT, "_speed:=-1"], stdin=keyboard, capture_output=True, text=True, check=False)
+        answer = subprocess.run([*COMMAND, "_speed:=-1"], stdin=keyboard, capture_output=True, text=True, check=False)
         os.close(screen), os.close(keyboard)
         self.assertNotEqual(answer.returncode, 0)
         self.assertIn("/teleop/speed: -1 (allowed: a number above 0", answer.stderr)
