@@ -215,6 +215,7 @@ void TerrainDisplay::update_look() {
   look.vertical_exaggeration = static_cast<double>(exaggeration_->getFloat());
   look.contour_interval = static_cast<double>(contours_->getFloat());
   scene_->set_look(look);
+  counts_ = scene_->counts();  // blocks wait from now on, not from the next frame on
   if (!source_) return;
   std::vector<std::string> layers = layers_for(look);
   std::replace(layers.begin(), layers.end(), std::string(cost_layer), source_of_layer(cost_layer));
