@@ -19,7 +19,8 @@
 /// an edge of a patch in both.
 ///
 /// A tile takes at least `sweeps` sweeps, unless two successive ones move nothing, and goes on, up to
-/// `max_sweeps_while_sliding`, while a pair moves more than `continue_threshold`.
+/// `max_sweeps_while_sliding`, while a pair moves more than `continue_threshold`. A tile whose relief is less
+/// than the drop at repose from any of its cells to the next takes none.
 ///
 /// Heights are floats that count whole units (tile_units.hpp). This law is the reference; on a GPU
 /// tuned/tile.cu gives the same bits faster.
@@ -137,6 +138,7 @@ struct RelaxTile {
     if (range.lowest >= wall_height) return;
     const Units units(range.lowest, range.highest, level.quanta_per_cell);
     load(team, column, row, units, h, ground, drop, base);
+    if (units.height(range.highest) - Units::floor <= least(team, drop)) return;
     const float threshold = units.drop(continue_threshold, level.quanta_per_cell);
     const bool moved = relax([&](int, const PatchShift& shift) DESERT_INLINE {
       const float max_moved = range.deep() ? sweep<true>(team, shift, h, ground, drop)
@@ -288,6 +290,13 @@ struct RelaxTile {
       ground[local(y, patches, k)] = ground[local(y, 0, k)];
       drop[local(y, patches, k)] = drop[local(y, 0, k)];
     });
+  }
+
+  /// The least of a tile's values, which are positive: their bits are in the same order.
+  template <class Team>
+  DESERT_HD static float least(const Team& team, const float* of) {
+    return float_from_bits(static_cast<std::uint32_t>(
+        team.min_of(cells, [=](int n) DESERT_INLINE { return static_cast<int>(bits_of(of[n])); })));
   }
 
   template <class Team>

@@ -90,6 +90,16 @@ void for_each_cell_of_rows(E& exec, const Grid& grid, int first, int rows, const
   for_each_cell(exec, band, RowBandLaw<Law>{law, first, grid.height});
 }
 
+/// Combines a law of for_each_line_in_turn() for the places between the ends of a line with one for the ends.
+template <class Inside, class Ends>
+struct LineWithEnds : Ends {
+  Inside inside;
+  int length;
+
+  LineWithEnds(const Inside& between, const Ends& ends, int places)
+      : Ends(ends), inside(between), length(places) {}
+};
+
 /// What the places of a line hand on: word after word, so that neighbouring places lie beside each other,
 /// with `reach` more places at either end.
 template <class Word>

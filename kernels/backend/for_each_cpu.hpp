@@ -280,6 +280,13 @@ void for_each_tile(CpuExec& exec, const Tiling& tiles, const Law& law) {
 /// Shorter lines are left to one thread.
 constexpr int min_parallel_line = 2048;
 
+/// A place of a line; a function of its own, because what is declared in a loop over vectors is kept in
+/// memory, and no loop with that is vectorised.
+template <class Law, class Words>
+DESERT_HD void pass_place(const Law& law, int line, int place, const Words& before, const Words& after) {
+  law.store(line, place, law.pass(law.load(line, place), before.from(place), after.from(place)));
+}
+
 /// The places first … end − 1 of a line.
 template <class Law>
 void pass_line(const Law& law, int line, int first, int end, const LineWords<typename Law::Word>& before,
@@ -289,9 +296,18 @@ void pass_line(const Law& law, int line, int first, int end, const LineWords<typ
     const LineWords<typename Law::Word> old_words = before, new_words = after;
     const int n = line, begin = first, last = end;
 #pragma omp simd
-    for (int m = begin; m < last; ++m)
-      own.store(n, m, own.pass(own.load(n, m), old_words.from(m), new_words.from(m)));
+    for (int m = begin; m < last; ++m) pass_place(own, n, m, old_words, new_words);
   });
+}
+
+template <class Inside, class Ends>
+void pass_line(const LineWithEnds<Inside, Ends>& law, int line, int first, int end,
+               const LineWords<typename Ends::Word>& before, const LineWords<typename Ends::Word>& after) {
+  const Ends& ends = law;
+  const int inside = std::clamp(1, first, end), last = std::clamp(law.length - 1, inside, end);
+  pass_line(ends, line, first, inside, before, after);
+  pass_line(law.inside, line, inside, last, before, after);
+  pass_line(ends, line, last, end, before, after);
 }
 
 /// Fills the places beyond the ends of a line that follow from its places first … end − 1.

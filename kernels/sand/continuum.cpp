@@ -62,8 +62,10 @@ void step(E& exec, const TerrainView& t, const StepInputs& in, const Dice& dice,
                 Bordered<Prepare<true, bare>, Prepare<false, bare>>{
                     t.grid, margin, prepare<true, bare>(t, in, order, drift, dice, ledger, work),
                     prepare<false, bare>(t, in, order, drift, dice, ledger, work)});
+  const PassSand<true> inside{order, drift, dice[Roll::lift], SweepFields(work)};
+  const PassSand<false> ends{order, drift, dice[Roll::lift], SweepFields(work)};
   for_each_line_in_turn(exec, 0, order.lines(), order.length(), work.lines.data(),
-                        PassSand{order, drift, dice[Roll::lift], SweepFields(work)});
+                        LineWithEnds(inside, ends, order.length()));
   for_each_cell(exec, t.grid,
                 Bordered<Settle<true, bare>, Settle<false, bare>>{
                     t.grid, margin, settle<true, bare>(t, in, order, drift, dice, ledger, work),

@@ -213,26 +213,29 @@ struct Prepare {
   }
 };
 
-/// What comes to a place from the line before, which `out(k)` left k places after it.
-template <class Out>
-DESERT_HD Quanta landing(const Drift& drift, const Out& out) {
-  const Quanta near = out(-drift.cells), far = out(-drift.cells - 1);
+/// What comes to a place from the line before, where `near` left the place upwind of it, drift.cells before
+/// it, and `far` the one before that.
+DESERT_HD Quanta landing(const Drift& drift, Quanta near, Quanta far) {
   return near - share(near, drift.beyond) + share(far, drift.beyond);
 }
 
 /// A line of the sweep. First the undisturbed wind carries what the cells of the line before hand on; then
 /// each place gives some of what comes to its neighbours. The turn is taken where the sand arrives, because
 /// the ground there is what it shapes: taken where it leaves, a line before, it would raise waves of four
-/// lines and less instead of smoothing them.
+/// lines and less instead of smoothing them. `inside`: the place is not an end of its line.
+template <bool inside>
 struct PassSand {
   static constexpr int words = words_handed_on, reach = reach_of_words;
   using Word = Quanta;
+  struct Inflow {
+    Quanta entering;
+    Turn turn;
+  };
   struct Loaded {
     float decay, gain;
     std::uint32_t die;
     Quanta lying;
-    Quanta entering[3];  ///< of the place before, of this one, of the one after
-    Turn turn[3];
+    Inflow before, here, after;  ///< of the place before, of this one, of the one after
   };
   struct Result {
     Quanta change, out, to_before, to_after;
@@ -247,28 +250,25 @@ struct PassSand {
   DESERT_HD Quanta before_first(int, int) const { return 0; }
   DESERT_HD Loaded load(int line, int place) const {
     const int first = line * order.length(), n = first + place;
-    Loaded cell;
-    cell.decay = fields.decay[n];
-    cell.gain = fields.gain[n];
-    cell.die = die.word(n);
-    cell.lying = fields.lying[n];
-    unrolled<3>([&](auto k) DESERT_INLINE {
-      const int place_there = order.place_within(place + k - 1),
-                there = first + (place_there < 0 ? 0 : place_there);
-      cell.entering[k] = place_there < 0 ? 0 : fields.entering[there];
-      cell.turn[k].both = place_there < 0 ? 0u : fields.turn[there];
-    });
-    return cell;
+    return {fields.decay[n],         fields.gain[n],           die.word(n),
+            fields.lying[n],         inflow(first, place - 1), inflow(first, place),
+            inflow(first, place + 1)};
+  }
+  DESERT_HD Inflow inflow(int first, int place) const {
+    const int within = inside ? place : order.place_within(place);
+    if (!inside && within < 0) return {0, {0u}};
+    return {fields.entering[first + within], {fields.turn[first + within]}};
   }
   template <class Before, class After>
   DESERT_HD Result pass(const Loaded& cell, const Before& before, const After& after) const {
-    Quanta come[3];  // to the place before, to this one, to the one after
-    unrolled<3>([&](auto k) DESERT_INLINE {
-      come[k] = cell.entering[k] + landing(drift, [&](int j) DESERT_INLINE { return before(0, k - 1 + j); });
-    });
-    const Quanta to_before = cell.turn[1].before(come[1]), to_after = cell.turn[1].after(come[1]);
-    const Quanta in =
-        come[1] - to_before - to_after + cell.turn[0].after(come[0]) + cell.turn[2].before(come[2]);
+    const int near = -drift.cells, far = near - 1;
+    // Numbers of their own, not an array or a choice: compilers vectorise the loops around.
+    const Quanta come_before = cell.before.entering + landing(drift, before(0, near - 1), before(0, far - 1));
+    const Quanta come = cell.here.entering + landing(drift, before(0, near), before(0, far));
+    const Quanta come_after = cell.after.entering + landing(drift, before(0, near + 1), before(0, far + 1));
+    const Quanta to_before = cell.here.turn.before(come), to_after = cell.here.turn.after(come);
+    const Quanta turned_in = cell.before.turn.after(come_before) + cell.after.turn.before(come_after);
+    const Quanta in = come - to_before - to_after + turned_in;
     const float wanted = static_cast<float>(in) * cell.decay + cell.gain;
     const Quanta out = Die::whole_at_most(wanted, in + cell.lying, cell.die);
     after(0) = out;
@@ -278,6 +278,7 @@ struct PassSand {
     const int n = line * order.length() + place;
     fields.change[n] = result.change;
     fields.out[n] = result.out;
+    if (inside) return;
     if (place == 0) fields.over_ends[2 * line] = result.to_before;
     if (place == order.length() - 1) fields.over_ends[2 * line + 1] = result.to_after;
   }
@@ -326,10 +327,11 @@ struct Settle {
   /// What the last line hands on to a place of the first.
   DESERT_HD Quanta over_seam(int place) const {
     const int last = (order.lines() - 1) * order.length();
-    return landing(drift, [&](int k) DESERT_INLINE {
-      const int other = order.place_within(place + k);
-      return other < 0 ? 0 : from.out[last + other];
-    });
+    const auto out = [&](int there) DESERT_INLINE {
+      const int within = order.place_within(there);
+      return within < 0 ? 0 : from.out[last + within];
+    };
+    return landing(drift, out(place - drift.cells), out(place - drift.cells - 1));
   }
   /// What goes over an open edge: with the wind from the cell to the next line, and to the side within its
   /// line.

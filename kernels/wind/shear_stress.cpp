@@ -48,15 +48,23 @@ struct Sweep {
   static constexpr int reach = Upwind::reach;
   static_assert(reach == reach_of_words);
   using Word = float;
-  Downwind order;
-  bool against;
+  // Numbers, not a Downwind and a flag, which compilers would choose by in each place of a line.
+  int lines, length, first_slot, slots_to_next;
+  bool periodic_across;
   Upwind upwind;
 
+  Sweep(const Downwind& order, bool against, const Upwind& from)
+      : lines(order.lines()),
+        length(order.length()),
+        first_slot(against ? (lines - 1) * length : 0),
+        slots_to_next(against ? -length : length),
+        periodic_across(order.periodic_across()),
+        upwind(from) {}
+
   DESERT_HD int slot(int line, int place) const {
-    const int lines = order.lines(), visited = line < 0 ? line + lines : line;
-    return (against ? lines - 1 - visited : visited) * order.length() + place;
+    return first_slot + (line < 0 ? line + lines : line) * slots_to_next + place;
   }
-  DESERT_HD bool around() const { return order.periodic_across(); }
+  DESERT_HD bool around() const { return periodic_across; }
   DESERT_HD float beyond(int, float nearest) const { return nearest; }
 };
 
@@ -118,10 +126,9 @@ struct FillBubbles : Sweep {
     const float below = upwind.interpolated(before, height), bends = upwind.interpolated(before, bend);
     const float falls = maximum(upwind.interpolated(before, slope) - bends, -steepest), flow = below + falls;
     const bool attached = here.height >= flow;
-    const float along_ground = clamp(here.height - below, -steepest, 0.0f);
-    const float surface = attached ? here.height : flow;
+    const float rises = attached ? here.height - below : falls, surface = maximum(here.height, flow);
     after(height) = surface;
-    after(slope) = attached ? along_ground : falls;
+    after(slope) = clamp(rises, -steepest, 0.0f);  // of the flow it is falls, which lies in between
     after(bend) = attached ? bend_from(here) : bends;
     return surface;
   }
@@ -235,7 +242,7 @@ void fill_bubbles(E& exec, const TerrainView& t, const Downwind& order, wind::Ve
   const float *ground = work.ground.data(), *lee = work.lee.data();
   for_each_cell(exec, t.grid, TakeGround{order, heights.cell_heights.data(), work.ground.data()});
   const auto sweep = [&](bool against) {
-    return Sweep{order, against, Upwind(to_fixed_point(against ? -shift : shift))};
+    return Sweep(order, against, Upwind(to_fixed_point(against ? -shift : shift)));
   };
   for_each_line_in_turn(exec, first, lines, order.length(), work.lines.data(),
                         FindLee(sweep(true), lee_slope * line * t.quanta_per_metre, ground, work.lee.data()));
