@@ -82,7 +82,7 @@ TerrainDisplay::TerrainDisplay() {
       SLOT(update_limits()));
   quad_pixels_->setMin(1);
   quad_pixels_->setMax(64);
-  triangles_ = new rviz::IntProperty("Most Triangles", 60000,
+  triangles_ = new rviz::IntProperty("Most Triangles", 40000,
                                      "At most so many triangles of ground are in the picture.", this,
                                      SLOT(update_limits()));
   triangles_->setMin(1000);

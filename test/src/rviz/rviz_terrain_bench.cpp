@@ -2,7 +2,9 @@
 // while a keyframe comes in and while updates come at 10 Hz; for grids of several sizes, and with the
 // displays that lie on the ground. Needs a ROS master and Xvfb:
 //
-//     roscore & rosrun desert_sim rviz_terrain_bench [SECONDS] [SIDE]...
+//     roscore & rosrun desert_sim rviz_terrain_bench [WIDTHxHEIGHT] [SECONDS] [SIDE]...
+//
+// The size is that of the picture, 1024x768 if it is left out.
 
 #include <nav_msgs/OccupancyGrid.h>
 #include <nav_msgs/Path.h>
@@ -160,17 +162,19 @@ int main(int argc, char** argv) {
   using namespace rviz_test;
   ros::init(argc, argv, "rviz_terrain_bench");
   ros::start();
-  const double seconds = argc > 1 ? std::atof(argv[1]) : 8;
+  int width = 1024, height = 768, next = 1;
+  if (argc > 1 && std::sscanf(argv[1], "%dx%d", &width, &height) == 2) ++next;
+  const double seconds = argc > next ? std::atof(argv[next++]) : 8;
   std::vector<int> sides;
-  for (int n = 2; n < argc; ++n) sides.push_back(std::atoi(argv[n]));
+  for (; next < argc; ++next) sides.push_back(std::atoi(argv[next]));
   if (sides.empty()) sides = {256, 512, 1024, 2048};
-  const Screen screen;
+  const Screen screen(width, height);
   if (!screen.problem().empty()) {
     std::fprintf(stderr, "%s\n", screen.problem().c_str());
     return 2;
   }
   QApplication application(argc, argv);
-  Window window(1024, 768, 30);
+  Window window(width, height, 30);
   window.set_fixed_frame("map");
   for (const int side : sides) measure(window, side, seconds);
   return 0;

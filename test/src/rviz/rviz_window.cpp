@@ -35,7 +35,7 @@ double now() {
 
 // ---- Screen ----
 
-Screen::Screen() {
+Screen::Screen(int width, int height) {
   int ends[2];
   if (pipe(ends) != 0) throw std::runtime_error("no pipe for Xvfb");
   pid_ = fork();
@@ -43,8 +43,9 @@ Screen::Screen() {
     close(ends[0]);
     prctl(PR_SET_PDEATHSIG, SIGTERM);  // a test that crashes leaves no screen behind
     dup2(open("/dev/null", O_WRONLY), STDERR_FILENO);
-    const std::string number = std::to_string(ends[1]);
-    execlp("Xvfb", "Xvfb", "-displayfd", number.c_str(), "-screen", "0", "1280x900x24", "+extension", "GLX",
+    const std::string number = std::to_string(ends[1]),
+                      size = std::to_string(width) + "x" + std::to_string(height) + "x24";
+    execlp("Xvfb", "Xvfb", "-displayfd", number.c_str(), "-screen", "0", size.c_str(), "+extension", "GLX",
            "-noreset", "-nolisten", "tcp", static_cast<char*>(nullptr));
     _exit(127);
   }

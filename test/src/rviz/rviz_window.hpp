@@ -16,7 +16,7 @@ namespace rviz_test {
 /// A screen without a monitor. Sets DISPLAY, and the variables that make OpenGL run in software.
 class Screen {
  public:
-  Screen();
+  explicit Screen(int width = 1280, int height = 900);
   ~Screen();
   Screen(const Screen&) = delete;
   Screen& operator=(const Screen&) = delete;

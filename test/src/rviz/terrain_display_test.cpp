@@ -71,7 +71,7 @@ TEST_F(TerrainDisplay, Complaint1ALargeKeyframeIsBuiltInManyFramesAndItsTriangle
   window_->run_frames(1);
   EXPECT_GE(most_built, 1);
   EXPECT_LT(most_built, 256) << "they do not come all at once";
-  EXPECT_LE(number(display, "triangles"), 200000) << "of which 60000 are in the picture";
+  EXPECT_LE(number(display, "triangles"), 200000) << "of which 40000 are in the picture";
 }
 
 // (2) One frame a second unless built for release.
