@@ -36,7 +36,19 @@ struct Mixing {
   void store(int line, int place, Number result) const { results[line * length + place] = result; }
 };
 
-std::vector<Number> expected(const Mixing& law, int first, int end) {
+/// Where the ends of a line are laws of their own: those, and what a line does as a whole.
+struct MixingEnds : Mixing {
+  Number load(int line, int place) const { return Mixing::load(line, place) + 7; }
+};
+struct MixingWithEnds : Mixing {
+  Number load(int line, int place) const {
+    return place == 0 || place == length - 1 ? MixingEnds{*this}.load(line, place)
+                                             : Mixing::load(line, place);
+  }
+};
+
+template <class Law>
+std::vector<Number> expected(const Law& law, int first, int end) {
   std::vector<Number> all(static_cast<std::size_t>(end * law.length));
   std::vector<Number> before[2], after[2];
   for (int w = 0; w < 2; ++w)
@@ -75,6 +87,9 @@ TEST(LineSweep, PassesLinesOfAnyLengthOnAnyNumberOfThreads) {
         CpuExec exec(threads);
         for_each_line_in_turn(exec, 0, end, length, memory.data(), law);
         EXPECT_EQ(results, expected(law, 0, end));
+        for_each_line_in_turn(exec, 0, end, length, memory.data(),
+                              LineWithEnds(law, MixingEnds{law}, length));
+        EXPECT_EQ(results, expected(MixingWithEnds{law}, 0, end)) << "with ends";
       }
 }
 
