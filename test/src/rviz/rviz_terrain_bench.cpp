@@ -162,8 +162,11 @@ int main(int argc, char** argv) {
   using namespace rviz_test;
   ros::init(argc, argv, "rviz_terrain_bench");
   ros::start();
-  int width = 1024, height = 768, next = 1;
-  if (argc > 1 && std::sscanf(argv[1], "%dx%d", &width, &height) == 2) ++next;
+  int width = 0, height = 0, next = 1;
+  if (argc > 1 && std::sscanf(argv[1], "%dx%d", &width, &height) == 2)
+    ++next;
+  else
+    width = 1024, height = 768;
   const double seconds = argc > next ? std::atof(argv[next++]) : 8;
   std::vector<int> sides;
   for (; next < argc; ++next) sides.push_back(std::atoi(argv[next]));
