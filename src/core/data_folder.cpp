@@ -54,7 +54,7 @@ fs::path checked_path(const std::string& name) {
 /// `path` is `root / name` with its links followed.
 void require_below(const fs::path& root, const fs::path& path, const std::string& name) {
   if (!is_below(root, path))
-    throw ConfigError(quoted(name) + ": a symbolic link points outside the folder " + root.string());
+    throw ConfigError(in_quotes(name) + ": a symbolic link points outside the folder " + root.string());
 }
 
 }  // namespace
@@ -67,12 +67,12 @@ std::string DataFolder::for_reading(const std::string& name) const {
     const fs::path root = fs::canonical(path_);
     const fs::path file = fs::weakly_canonical(root / relative);
     require_below(root, file, name);
-    if (!fs::exists(file)) throw ConfigError(quoted(name) + ": no such file exists in " + root.string());
-    if (!fs::is_regular_file(file)) throw ConfigError(quoted(name) + ": is not a file");
+    if (!fs::exists(file)) throw ConfigError(in_quotes(name) + ": no such file exists in " + root.string());
+    if (!fs::is_regular_file(file)) throw ConfigError(in_quotes(name) + ": is not a file");
     return file.string();
   } catch (const fs::filesystem_error& e) {
-    throw ConfigError(quoted(name) + ": the file system reports \"" + e.code().message() + "\" (in " + path_ +
-                      ")");
+    throw ConfigError(in_quotes(name) + ": the file system reports \"" + e.code().message() + "\" (in " +
+                      path_ + ")");
   }
 }
 
@@ -84,17 +84,18 @@ WritableFile DataFolder::for_writing(const std::string& name) const {
     const fs::path file = fs::weakly_canonical(root / relative);
     require_below(root, file, name);
     if (fs::is_symlink(file))  // all others have been followed
-      throw ConfigError(quoted(name) + ": is a symbolic link that leads nowhere");
+      throw ConfigError(in_quotes(name) + ": is a symbolic link that leads nowhere");
     const fs::path folder = file.parent_path();
     auto opened = std::make_shared<const Descriptor>(
         open_folder_below(root, folder.lexically_relative(root), MissingFolders::create));
     if (opened->number() < 0)
       throw fs::filesystem_error("", folder, std::error_code(errno, std::generic_category()));
-    if (fs::exists(file) && !fs::is_regular_file(file)) throw ConfigError(quoted(name) + ": is not a file");
+    if (fs::exists(file) && !fs::is_regular_file(file))
+      throw ConfigError(in_quotes(name) + ": is not a file");
     return {file.string(), std::move(opened)};
   } catch (const fs::filesystem_error& e) {
-    throw ConfigError(quoted(name) + ": the file system reports \"" + e.code().message() + "\" (in " + path_ +
-                      ")");
+    throw ConfigError(in_quotes(name) + ": the file system reports \"" + e.code().message() + "\" (in " +
+                      path_ + ")");
   }
 }
 

@@ -46,7 +46,7 @@ inline std::string did_you_mean(const std::string& given, const std::string& kno
 
 /// "'widht' is not one of: width, height; did you mean 'width'?"
 inline std::string not_one_of(const std::string& given, const std::string& known) {
-  return quoted(given) + " is not one of: " + known + did_you_mean(given, known);
+  return in_quotes(given) + " is not one of: " + known + did_you_mean(given, known);
 }
 
 }  // namespace desert_sim

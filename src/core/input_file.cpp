@@ -36,12 +36,12 @@ int open_below(const std::string& folder, const std::string& path) {
   // The reason why a file outside cannot be opened would tell something about it.
   const fs::path known = error ? fs::absolute(path).lexically_normal() : file;
   if (!is_below(root, known) && !is_below(fs::absolute(folder).lexically_normal(), known))
-    throw ConfigError(quoted(path) + ": is not below " + root.string());
+    throw ConfigError(in_quotes(path) + ": is not below " + root.string());
   if (error) throw_error(path, error.value());
   const auto check_opened = [&path](int opened) {
     // ENOTDIR and ELOOP: a link has come in the way after the links were followed.
     if (opened < 0 && (errno == ELOOP || errno == ENOTDIR))
-      throw ConfigError(quoted(path) + ": was replaced by a symbolic link while it was opened");
+      throw ConfigError(in_quotes(path) + ": was replaced by a symbolic link while it was opened");
     if (opened < 0) throw_error(path, errno);
     return opened;
   };

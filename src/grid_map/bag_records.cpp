@@ -115,7 +115,7 @@ std::string unpacked(std::string packed, std::uint32_t size, const std::string& 
   else if (compression == "lz4")
     unpack(rosbag::LZ4Stream(nullptr));
   else
-    throw ConfigError("has the unknown compression " + quoted(compression) + " (allowed: none, bz2, lz4)");
+    throw ConfigError("has the unknown compression " + in_quotes(compression) + " (allowed: none, bz2, lz4)");
   return bytes;
 }
 
@@ -149,7 +149,7 @@ class Bag {
     if (header.op != bag_op) records_.fail();
     const std::string encryptor = header.field("encryptor");
     if (!encryptor.empty() && encryptor != "rosbag/NoEncryptor")
-      throw ConfigError("is encrypted by " + quoted(encryptor) + ", which is not supported");
+      throw ConfigError("is encrypted by " + in_quotes(encryptor) + ", which is not supported");
     index_position_ = number<std::uint64_t>(header.field("index_pos"));  // 0 while it is being recorded
   }
 

@@ -45,13 +45,13 @@ void validate_layers(const GridMap& map, const std::string& source) {
     throw_error(source, "names ", map.layers.size(), " layers but contains ", map.data.size());
   std::set<std::string> names;
   for (const std::string& name : map.layers)
-    if (!names.insert(name).second) throw_error(source, "layers: ", quoted(name), " is given twice");
+    if (!names.insert(name).second) throw_error(source, "layers: ", in_quotes(name), " is given twice");
 }
 
 /// Throws ConfigError unless the layer is column-major and its number of cells agrees with the map's lengths.
 void validate_layout(const GridMap& map, std::size_t n, const std::string& source) {
   const std_msgs::Float32MultiArray& layer = map.data[n];
-  const std::string name = "layer " + quoted(map.layers[n]);
+  const std::string name = "layer " + in_quotes(map.layers[n]);
   const auto& dim = layer.layout.dim;
   if (dim.size() != 2 || dim[0].label != "column_index" || dim[1].label != "row_index")
     throw_error(source, name, ": must be column-major: dim[0] column_index and dim[1] row_index");
@@ -107,7 +107,8 @@ Raster to_raster(const GridMap& map, const RasterOptions& options, const std::st
           (column + map.inner_start_index) % columns * rows + (row + map.outer_start_index) % rows;
       const bool at_edge = row == 0 || row == rows - 1 || column == 0 || column == columns - 1;
       const float value = cells.convert(layer.data[from], at_edge);
-      if (std::isinf(value)) throw_error(source, "layer ", quoted(map.layers[n]), ": has an infinite value");
+      if (std::isinf(value))
+        throw_error(source, "layer ", in_quotes(map.layers[n]), ": has an infinite value");
       raster.values[(columns - 1 - column) * rows + (rows - 1 - row)] = value;
     }
   warn_of_undeclared_nodata(cells, source);

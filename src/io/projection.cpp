@@ -11,14 +11,13 @@
 #include <memory>
 #include <optional>
 
+#include "src/core/constants.hpp"
 #include "src/io/gdal_messages.hpp"
 #include "src/io/raster_geometry.hpp"
 
 namespace desert_sim {
 
 namespace {
-
-constexpr double pi = 3.14159265358979323846;
 
 /// EPSG code of WGS 84 / UTM, or of WGS 84 / UPS beyond the latitudes that UTM covers.
 int metric_epsg(double longitude, double latitude) {

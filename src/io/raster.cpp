@@ -7,7 +7,6 @@
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
-#include <limits>
 
 #include "src/core/temporary_file.hpp"
 #include "src/io/gdal_messages.hpp"
@@ -15,8 +14,6 @@
 
 namespace desert_sim {
 namespace {
-
-constexpr float no_data = std::numeric_limits<float>::quiet_NaN();
 
 /// The geotransform to write: the recorded one if it agrees with cell_size and origin, otherwise one that is
 /// computed from them.

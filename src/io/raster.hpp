@@ -2,6 +2,7 @@
 /// Reads and writes single-band rasters through GDAL.
 
 #include <array>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -9,6 +10,9 @@
 #include "src/scenario/raster_encoding.hpp"
 
 namespace desert_sim {
+
+/// Stands for missing data, here and in the files that are written.
+constexpr float no_data = std::numeric_limits<float>::quiet_NaN();
 
 /// What the band that is read declares of its numbers: a unit, or that they are the red of colours.
 struct DeclaredBand {
@@ -22,7 +26,7 @@ struct Raster {
   double cell_size = 1;               ///< side of a square cell [unit of the CRS, see length_unit()]
   double origin_x = 0, origin_y = 0;  ///< lower-left corner of the lower-left cell [unit of the CRS]
   std::string projection;             ///< WKT, empty if none
-  std::vector<float> values;          ///< width * height values, NaN where nodata
+  std::vector<float> values;          ///< width * height values, no_data where missing
 
   /// The north-up geotransform of the file that the raster was read from; all zero if there is none.
   /// write_geotiff() writes it unchanged as long as it agrees with cell_size and origin, so that reading and

@@ -18,8 +18,6 @@
 namespace desert_sim {
 namespace {
 
-constexpr float no_data = std::numeric_limits<float>::quiet_NaN();
-
 GDALResampleAlg gdal_method(Resampling method) {
   switch (method) {
     case Resampling::bilinear:

@@ -89,10 +89,10 @@ void check_text_grid(const std::string& path, const std::string& name, int colum
   std::uint64_t numbers = 0;
   for (; more; more = words.next(word), ++numbers) {
     if (!is_number(word))
-      throw_raster_error(path, concatenate("line ", words.line(), ": ", quoted(word), " is not a number"));
+      throw_raster_error(path, concatenate("line ", words.line(), ": ", in_quotes(word), " is not a number"));
     if (whole && !is_whole(word))
       throw_raster_error(path,
-                         concatenate("line ", words.line(), ": ", quoted(word),
+                         concatenate("line ", words.line(), ": ", in_quotes(word),
                                      " is no whole number, as those at the beginning are, so that GDAL takes "
                                      "all for whole ones; write one of the first with a decimal point"));
   }

@@ -66,7 +66,7 @@ std::string difference(const std::string& saved, const std::string& here) {
   std::istringstream a(saved), b(here);
   std::string x, y;
   while (std::getline(a, x) && std::getline(b, y))
-    if (x != y) return quoted(x) + ", while this rover has " + quoted(y);
+    if (x != y) return in_quotes(x) + ", while this rover has " + in_quotes(y);
   return "other parameters";
 }
 

@@ -107,7 +107,7 @@ void check_ramp(const Scenario& scenario, const Ramp& ramp, double time, const s
     }
   });
   if (!found)
-    errors.add(key + ".path", quoted(ramp.path) + " is not a floating-point parameter that can change");
+    errors.add(key + ".path", in_quotes(ramp.path) + " is not a floating-point parameter that can change");
 }
 
 std::vector<TimelineEntry> read_timeline(const YAML::Node& list, ValidationErrors& errors) {

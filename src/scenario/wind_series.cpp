@@ -141,7 +141,7 @@ WindSeries WindSeries::from_text(const std::string& text, const std::string& sou
   std::string word;
   double date = 0;
   const auto refuse = [&source](const std::string& what) -> void {
-    throw ConfigError(source + ": " + quoted(what) + " is not what a wind series has there");
+    throw ConfigError(source + ": " + in_quotes(what) + " is not what a wind series has there");
   };
   if (!(in >> word) || (word != "-" && !read_plain_number(word, date))) refuse(word);
   if (word != "-") series.date = date;

@@ -120,7 +120,7 @@ class RowReader {
     }
     double time = 0, speed = 0, direction = 0;
     if (!times.read(field(columns_.time), columns_.decimal_comma(), time)) {
-      errors_.add(key + ", column time", quoted(field(columns_.time)) + " is not " + times.expected());
+      errors_.add(key + ", column time", in_quotes(field(columns_.time)) + " is not " + times.expected());
       return;
     }
     if (last_time_ && !(time > *last_time_))
@@ -152,7 +152,7 @@ class RowReader {
   void number(const std::string& key, const char* name, const std::string& field, double lowest,
               double highest, const char* unit, double& value) {
     if (!read_plain_number(field, value, columns_.decimal_comma()) || !(value >= lowest && value <= highest))
-      errors_.add(key + ", column " + name, quoted(field) + " is not a number in [" + number_text(lowest) +
+      errors_.add(key + ", column " + name, in_quotes(field) + " is not a number in [" + number_text(lowest) +
                                                 ", " + number_text(highest) + "] " + unit);
   }
 
@@ -172,7 +172,7 @@ double start_of(const WindSeries& series, const TimeReader& times, const std::st
   const bool read = times.dates ? date.has_value() : read_plain_number(given, start);
   if (times.dates && date) start = *date;
   if (!read || !(start >= first && start <= last))
-    errors.add("wind.series_start", quoted(given) + " is not in [" + times.shown(first) + ", " +
+    errors.add("wind.series_start", in_quotes(given) + " is not in [" + times.shown(first) + ", " +
                                         times.shown(last) + "], the times of the series");
   return start;
 }

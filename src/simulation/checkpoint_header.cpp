@@ -215,7 +215,8 @@ void read_series(const YAML::Node& node, const std::string& path, CheckpointHead
                       header.scenario.wind_regime.regime == WindRegimeKind::series ||
                       header.start.wind_regime.regime == WindRegimeKind::series;
   if (!node["wind_series"]) {
-    if (needed) throw ConfigError(path + ": wind_series: is missing, which has the rows of " + quoted(file));
+    if (needed)
+      throw ConfigError(path + ": wind_series: is missing, which has the rows of " + in_quotes(file));
     return;
   }
   header.wind.series = header.scenario.wind_series = header.start.wind_series =
@@ -254,9 +255,10 @@ void read_layers(const YAML::Node& list, ValidationErrors& errors, CheckpointHea
              is_written(row->layer, header.scenario);
     };
     if (row == layer_table.end() || (row->lifetime != Lifetime::persistent && !is_held()))
-      return errors.add(key, quoted(name) + " is not a layer that checkpoints hold");
+      return errors.add(key, in_quotes(name) + " is not a layer that checkpoints hold");
     const auto place = static_cast<std::size_t>(row - layer_table.begin());
-    if (place < next) return errors.add(key, quoted(name) + " is given twice, or not in the order of layers");
+    if (place < next)
+      return errors.add(key, in_quotes(name) + " is given twice, or not in the order of layers");
     next = place + 1;
     header.layers.push_back(row->layer);
   }

@@ -136,7 +136,7 @@ ViewParameters view_parameters(const std::vector<std::string>& settings) {
   YAML::Node given(YAML::NodeType::Map);
   for (const std::string& setting : settings) {
     const std::size_t equals = setting.find('=');
-    if (equals == std::string::npos) throw ConfigError("--view " + quoted(setting) + ": is not KEY=VALUE");
+    if (equals == std::string::npos) throw ConfigError("--view " + in_quotes(setting) + ": is not KEY=VALUE");
     given[setting.substr(0, equals)] = setting.substr(equals + 1);
   }
   ViewParameters p;

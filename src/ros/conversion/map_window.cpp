@@ -26,7 +26,7 @@ std::vector<MapLayer> map_layers_named(const std::vector<std::string>& names, co
     const MapLayer* const found = find_map_layer(name);
     if (!found) throw ConfigError(key + ": " + not_one_of(name, map_layer_names()));
     if (std::any_of(chosen.begin(), chosen.end(), same))
-      throw ConfigError(key + ": " + quoted(name) + " is given twice");
+      throw ConfigError(key + ": " + in_quotes(name) + " is given twice");
     chosen.push_back(*found);
   }
   return chosen;

@@ -26,7 +26,7 @@ tf2::Transform TerrainTransforms::to_terrain(const std_msgs::Header& header) con
       return lookup(frame, header.stamp);
     } catch (const std::runtime_error& e) {  // of tf2, or of times that are too far apart
       if (std::chrono::steady_clock::now() >= end)
-        throw ConfigError("frame " + quoted(given) + " cannot be transformed into the terrain's frame '" +
+        throw ConfigError("frame " + in_quotes(given) + " cannot be transformed into the terrain's frame '" +
                           terrain_frame_ + "': " + shortened(e.what()));
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
@@ -39,8 +39,8 @@ bool TerrainTransforms::latest_to_terrain(const std::string& frame, tf2::Transfo
     transform = lookup(frame, ros::Time(0));
     return true;
   } catch (const std::runtime_error& e) {  // of tf2, or of times that are too far apart
-    reason = "frame " + quoted(frame) + " cannot be transformed into the terrain's frame '" + terrain_frame_ +
-             "': " + shortened(e.what());
+    reason = "frame " + in_quotes(frame) + " cannot be transformed into the terrain's frame '" +
+             terrain_frame_ + "': " + shortened(e.what());
     return false;
   }
 }

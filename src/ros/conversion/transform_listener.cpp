@@ -45,7 +45,7 @@ void TransformListener::receive(const TransformEvent& event, bool is_static) {
     }
     if (!fault.empty())
       ROS_ERROR_THROTTLE(10, "A transform to frame %s is ignored: %s",
-                         quoted(transform.child_frame_id).c_str(), fault.c_str());
+                         in_quotes(transform.child_frame_id).c_str(), fault.c_str());
   }
 }
 

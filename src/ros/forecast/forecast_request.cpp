@@ -23,7 +23,7 @@ template <class Entries>
 void require_parameters_of_the_desert(const Entries& entries) {
   for (const auto& entry : entries)
     if (entry.name.find("__") == std::string::npos && entry.name != "step_rate")
-      throw ConfigError("parameters: " + quoted(entry.name) +
+      throw ConfigError("parameters: " + in_quotes(entry.name) +
                         " is no parameter of the desert (allowed: SECTION__KEY of the scenario, step_rate)");
 }
 
@@ -39,7 +39,7 @@ void add_wind(const ForecastTerrainGoal& goal, std::vector<ForecastCommand>& com
   }
   if (!has_wind) {
     if (!goal.wind_kind.empty())
-      throw ConfigError("wind: has no segments for the wind_kind " + quoted(goal.wind_kind) +
+      throw ConfigError("wind: has no segments for the wind_kind " + in_quotes(goal.wind_kind) +
                         " (allowed: none of both, or both)");
     return;
   }

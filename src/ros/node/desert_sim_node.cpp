@@ -1,54 +1,5 @@
-/// desert_sim_node: the simulation as a ROS node. After SIGTERM or Ctrl-C it ends within five seconds: a step
-/// that takes longer is given up (status 4), and its journal then ends with the last command.
-#include <unistd.h>
+/// The program desert_sim_node. It lies apart from the node itself, whose headers take long to compile,
+/// so that these are compiled with the rest of desert_ros.
+#include "src/ros/node/sim_node.hpp"
 
-#include <csignal>
-#include <iostream>
-#include <memory>
-#include <string>
-
-#include "src/ros/node/desert_sim_server.hpp"
-#include "src/ros/parameters/node_parameters.hpp"
-#include "src/ros/support/node_program.hpp"
-
-namespace {
-
-constexpr int exit_given_up = 4;
-constexpr unsigned shutdown_time = 5;  // [s]
-constexpr double last_words = 0.5;     // [s], for the last status
-
-void give_up(int) {
-  constexpr char text[] = "desert_sim_node: a step took longer than the shutdown may, and was given up.\n";
-  [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, text, sizeof text - 1);
-  _exit(exit_given_up);
-}
-
-/// Handles SIGTERM and SIGINT; only calls what a signal handler may.
-void shut_down(int) {
-  alarm(shutdown_time - 1);
-  ros::requestShutdown();
-}
-
-desert_sim::Options options() {
-  desert_sim::Options o("desert_sim_node", "The simulation as a ROS node, which it is without options.");
-  o.flag("describe", "print the page of its parameters")
-      .footer(
-          "Exit status: 0 after a shutdown; 2 for input it refuses; 3 for a failure at run\n"
-          "time; 4 after a step that took longer than the shutdown may.");
-  return o;
-}
-
-}  // namespace
-
-int main(int argc, char** argv) {
-  if (desert_sim::has_options(argc, argv))
-    return desert_sim::run_main(options(), argc, argv, [](const desert_sim::Options&) {
-      std::cout << desert_sim::describe_node_parameters();
-      return 0;
-    });
-  std::signal(SIGALRM, give_up);
-  return desert_sim::run_node(
-      argc, argv, "desert_sim",
-      [] { return std::make_unique<const desert_sim::DesertSimServer>(ros::NodeHandle("~")); }, shut_down,
-      last_words);
-}
+int main(int argc, char** argv) { return desert_sim::run_sim_node(argc, argv); }

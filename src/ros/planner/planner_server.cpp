@@ -19,7 +19,7 @@ namespace desert_sim {
 
 namespace {
 
-constexpr std::size_t most_waiting = 1000;  // messages in lockstep
+constexpr std::size_t lockstep_queue = 1000;  // [messages]
 
 geometry_msgs::Twist twist_of(const DriveCommand& command) {
   geometry_msgs::Twist twist;
@@ -48,7 +48,7 @@ PlannerServer::PlannerServer(const ros::NodeHandle& node, const ros::NodeHandle&
   command_publisher_ = node_.advertise<geometry_msgs::Twist>("cmd_vel", 1);
   const std::string goals = setup_.node.goal_topic.empty() ? "move_base_simple/goal" : setup_.node.goal_topic;
   goal_subscriber_ = node_.subscribe(goals, 1, &PlannerServer::receive_goal, this);
-  const std::uint32_t queue = lockstep_ ? most_waiting : 10;
+  const std::uint32_t queue = lockstep_ ? lockstep_queue : 10;
   status_subscriber_ =
       node_.subscribe(setup_.node.rover_node + "/status", queue, &PlannerServer::receive_rover_status, this);
   if (lockstep_) {

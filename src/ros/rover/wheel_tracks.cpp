@@ -13,7 +13,7 @@ namespace desert_sim {
 
 namespace {
 
-constexpr std::size_t most_waiting = 64;
+constexpr std::size_t most_tracks_waiting = 64;
 constexpr double shallowest = 4e-6;  ///< a few quanta of the terrain [m]
 constexpr double packed = 0.1;       ///< looseness under a wheel
 
@@ -57,7 +57,7 @@ void WheelTracks::follow(const Rover& rover, double cell_size) {
       continue;
     }
     const std::lock_guard<std::mutex> lock(mutex_);
-    if (waiting_.size() >= most_waiting) waiting_.pop_front();
+    if (waiting_.size() >= most_tracks_waiting) waiting_.pop_front();
     waiting_.push_back(request);
     wake_.notify_all();
   }

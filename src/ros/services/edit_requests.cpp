@@ -21,7 +21,7 @@ namespace {
 void check_tilt(const tf2::Transform& transform, const std::string& frame) {
   const double up = (transform.getBasis() * tf2::Vector3(0, 0, 1)).z();
   if (up >= std::cos(45 / degrees_per_radian)) return;
-  throw ConfigError("frame " + quoted(frame) + " is tilted by " +
+  throw ConfigError("frame " + in_quotes(frame) + " is tilted by " +
                     std::to_string(std::acos(std::max(-1.0, up)) * degrees_per_radian) +
                     " deg against the terrain's frame, so angle_deg is undefined (allowed: at most 45 deg)");
 }

@@ -97,7 +97,7 @@ void save_terrain_folder(const ServiceContext& c, const SaveTerrainRequest& requ
   const TerrainFormat format = terrain_format(request.format);
   if (is_bag(request.name))
     throw ConfigError(
-        "name: " + quoted(request.name) +
+        "name: " + in_quotes(request.name) +
         " has the extension .bag, which load_terrain reads as a file (allowed: the name of a folder)");
   const WritableFile file = c.files.for_writing(request.name + "/" + terrain_file);
   const TerrainToSave terrain = c.simulation.terrain_to_save(file.path()).get();

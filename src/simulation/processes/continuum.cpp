@@ -10,7 +10,7 @@ namespace desert_sim {
 
 namespace {
 
-const std::string section = register_section<ContinuumParameters>("continuum");
+const std::string continuum_section = register_section<ContinuumParameters>("continuum");
 
 void transport(StepContext& c, ProcessWorkspace* workspace) {
   const Scenario& s = c.scenario();
@@ -42,7 +42,7 @@ float longest_step(const SimulationState& state) {
 Process continuum_process() {
   Process p;
   p.name = name_of(SandModel::continuum);
-  p.parameters = {"saltation", section, "shear_stress", "abrasion"};
+  p.parameters = {"saltation", continuum_section, "shear_stress", "abrasion"};
   p.source = "Kroy et al. 2002, Andreotti et al. 2010";
   p.header = "kernels/sand/continuum.hpp";
   p.active = [](const Scenario& s) { return has_sand_model(s, SandModel::continuum); };

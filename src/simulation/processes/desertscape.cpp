@@ -8,15 +8,17 @@ namespace desert_sim {
 
 namespace {
 
-const std::string name = name_of(SandModel::desertscape_2019);
-const std::string section = register_section<DesertscapeParameters>(name);
+const std::string desertscape_name = name_of(SandModel::desertscape_2019);
+const std::string desertscape_section = register_section<DesertscapeParameters>(desertscape_name);
 
-const DesertscapeParameters& parameters_of(const Scenario& s) { return s.get<DesertscapeParameters>(); }
+const DesertscapeParameters& desertscape_parameters(const Scenario& s) {
+  return s.get<DesertscapeParameters>();
+}
 
 void move_slabs(StepContext& c, ProcessWorkspace* workspace) {
   const Scenario& s = c.scenario();
   const bool creeps = s.get<ReptationParameters>().method != ReptationMethod::off;
-  const desertscape::StepInputs in{parameters_of(s),
+  const desertscape::StepInputs in{desertscape_parameters(s),
                                    s.get<SaltationParameters>(),
                                    s.get<AbrasionParameters>(),
                                    s.get<ReposeParameters>(),
@@ -34,15 +36,16 @@ void move_slabs(StepContext& c, ProcessWorkspace* workspace) {
 
 Process desertscape_process() {
   Process p;
-  p.name = name;
-  p.parameters = {"saltation", section, "abrasion", "reptation"};
+  p.name = desertscape_name;
+  p.parameters = {"saltation", desertscape_section, "abrasion", "reptation"};
   p.source = "Paris et al. 2019 §5";
   p.header = "kernels/sand/desertscape.hpp";
   p.active = [](const Scenario& s) { return has_sand_model(s, SandModel::desertscape_2019); };
   p.check = [](const Scenario& s, ValidationErrors& errors) {
     check_reach(s, "saltation.hop_time", fastest_wind(s) * s.get<SaltationParameters>().hop_time, errors);
     check_step_length(s, "desertscape_2019.slab / (4 saltation.lift)",
-                      desertscape::longest_step(parameters_of(s), s.get<SaltationParameters>()), errors);
+                      desertscape::longest_step(desertscape_parameters(s), s.get<SaltationParameters>()),
+                      errors);
   };
   p.roles = {Role::sand_transport, Role::reptation};
   p.reads = {Layer::wind_x,   Layer::wind_y,     Layer::wind_shadow,
@@ -55,7 +58,7 @@ Process desertscape_process() {
   });
   p.step = move_slabs;
   p.longest_step = [](const SimulationState& state) {
-    return desertscape::longest_step(parameters_of(state.scenario),
+    return desertscape::longest_step(desertscape_parameters(state.scenario),
                                      state.scenario.get<SaltationParameters>());
   };
   return p;

@@ -9,17 +9,17 @@ namespace desert_sim {
 
 namespace {
 
-const std::string section = register_section<LoosenessParameters>("looseness");
+const std::string looseness_section = register_section<LoosenessParameters>("looseness");
 
-bool is_enabled(const Scenario& s) { return s.get<LoosenessParameters>().enabled; }
+bool is_loosened(const Scenario& s) { return s.get<LoosenessParameters>().enabled; }
 
 Process row(const char* name) {
   Process p;
   p.name = name;
-  p.parameters = {section};
+  p.parameters = {looseness_section};
   p.source = "Bagnold 1941";
   p.header = "kernels/sand/looseness.hpp";
-  p.active = is_enabled;
+  p.active = is_loosened;
   return p;
 }
 
@@ -38,7 +38,7 @@ Process sand_record_process() {
 Process looseness_process() {
   Process p = row("looseness");
   p.needs = {SharedField::sand_before, SharedField::impact_strength};
-  p.parameters = {section, "saltation", "repose"};
+  p.parameters = {looseness_section, "saltation", "repose"};
   p.reads = {Layer::sand, Layer::soil, Layer::moisture, Layer::wind_shadow};
   p.writes = {Layer::looseness};
   p.begin = [](SimulationState& state, Layer) {
@@ -59,7 +59,7 @@ Process looseness_process() {
 
 Process slide_looseness_process() {
   Process p = row("slide_looseness");
-  p.parameters = {section, "repose"};
+  p.parameters = {looseness_section, "repose"};
   p.reads = {Layer::sand, Layer::soil, Layer::moisture, Layer::vegetation};
   p.writes = {Layer::looseness};
   p.step = [](StepContext& c, ProcessWorkspace*) {

@@ -7,15 +7,18 @@ namespace desert_sim {
 
 namespace {
 
-const std::string section = register_section<ParticleParameters>("particle");
+const std::string particle_section = register_section<ParticleParameters>("particle");
 
-const ParticleParameters& parameters_of(const Scenario& s) { return s.get<ParticleParameters>(); }
+const ParticleParameters& particle_parameters(const Scenario& s) { return s.get<ParticleParameters>(); }
 
 void fly(StepContext& c, ProcessWorkspace* workspace) {
   const Scenario& s = c.scenario();
-  const particles::StepInputs in{
-      parameters_of(s), s.get<ReposeParameters>(),      s.get<SaltationParameters>().influx, c.time_step(),
-      c.wind_above(),   c.fields.impact_strength.data()};
+  const particles::StepInputs in{particle_parameters(s),
+                                 s.get<ReposeParameters>(),
+                                 s.get<SaltationParameters>().influx,
+                                 c.time_step(),
+                                 c.wind_above(),
+                                 c.fields.impact_strength.data()};
   with_backend(c.exec(), [&](auto& e) {
     particles::step(e, c.terrain, in, c.dice(), c.state.ledger(),
                     workspace_as<particles::Workspace>(workspace));
@@ -27,7 +30,7 @@ void fly(StepContext& c, ProcessWorkspace* workspace) {
 Process wang_process() {
   Process p;
   p.name = name_of(SandModel::wang);
-  p.parameters = {section, "saltation", "repose"};
+  p.parameters = {particle_section, "saltation", "repose"};
   p.source = "Wang & Hu 2012, Kok & Renno 2009, Owen 1964";
   p.header = "kernels/particles/wang.hpp";
   p.active = [](const Scenario& s) { return has_sand_model(s, SandModel::wang); };
@@ -42,7 +45,8 @@ Process wang_process() {
     with_backend(c.exec(), [&](auto& e) { particles::blow(e, c.terrain, c.wind_above()); });
   };
   p.longest_step = [](const SimulationState& state) {
-    return particles::longest_step(parameters_of(state.scenario), state.terrain.grid(), state.wind_above());
+    return particles::longest_step(particle_parameters(state.scenario), state.terrain.grid(),
+                                   state.wind_above());
   };
   return p;
 }

@@ -10,11 +10,11 @@ namespace desert_sim {
 
 namespace {
 
-const std::string section = register_section<SlabModelParameters>("slab_model");
+const std::string slab_section = register_section<SlabModelParameters>("slab_model");
 const std::string plant_section = register_section<SlabPlantParameters>("slab_plants");
 const std::string snow_section = register_section<SlabSnowParameters>("slab_snow");
 
-const SlabModelParameters& parameters_of(const Scenario& s) { return s.get<SlabModelParameters>(); }
+const SlabModelParameters& slab_parameters(const Scenario& s) { return s.get<SlabModelParameters>(); }
 
 /// Intervals of simulated time that end with the step.
 int ending_with_step(const StepContext& c, float interval) {
@@ -27,7 +27,7 @@ void move_slabs(SlabKind kind, StepContext& c, ProcessWorkspace* workspace) {
   const auto& plants = s.get<SlabPlantParameters>();
   const SlabSnowParameters& snow = s.get<SlabSnowParameters>();
   const slabs::StepInputs in{kind,
-                             parameters_of(s),
+                             slab_parameters(s),
                              plants,
                              snow,
                              s.growth_curves,
@@ -44,12 +44,12 @@ void move_slabs(SlabKind kind, StepContext& c, ProcessWorkspace* workspace) {
 Process slab_process(SandModel model, SlabKind kind, const std::string& source) {
   Process p;
   p.name = name_of(model);
-  p.parameters = {section, "saltation"};
+  p.parameters = {slab_section, "saltation"};
   p.source = source;
   p.header = "kernels/slabs/slab_model.hpp";
   p.active = [model](const Scenario& s) { return has_sand_model(s, model); };
   p.check = [](const Scenario& s, ValidationErrors& errors) {
-    check_step_length(s, "slab_model.poll_time", parameters_of(s).poll_time, errors);
+    check_step_length(s, "slab_model.poll_time", slab_parameters(s).poll_time, errors);
   };
   p.roles = {Role::sand_transport, Role::wind,      Role::wind_shadow, Role::sand_flux,
              Role::repose,         Role::reptation, Role::avalanching};
@@ -72,7 +72,7 @@ bool never_recorded(const SimulationState&) { return false; }
 Process werner_process() {
   Process p = slab_process(SandModel::werner, SlabKind::werner, "Werner 1995");
   // Forced erosion reads back how many slabs were taken.
-  p.can_be_recorded = [](const SimulationState& s) { return !parameters_of(s.scenario).forced_erosion; };
+  p.can_be_recorded = [](const SimulationState& s) { return !slab_parameters(s.scenario).forced_erosion; };
   return p;
 }
 

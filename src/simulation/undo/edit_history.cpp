@@ -107,10 +107,10 @@ Stroke& EditHistory::find(const std::string& name, bool undone, const std::strin
   const std::string verb = undone ? "redone" : "undone";
   if (!remembers()) throw ConfigError(what + ": no stroke is kept, because undo_memory is 0");
   if (!newest) throw ConfigError(what + ": there is no stroke that can be " + verb);
-  throw ConfigError(what + ": stroke: " + desert_sim::quoted(name) +
+  throw ConfigError(what + ": stroke: " + desert_sim::in_quotes(name) +
                     " is not the name of a stroke that can be " + verb +
                     (newest->name.empty() ? " (the newest has no name)"
-                                          : " (the newest is " + desert_sim::quoted(newest->name) + ")"));
+                                          : " (the newest is " + desert_sim::in_quotes(newest->name) + ")"));
 }
 
 CommandResult EditHistory::undo(const std::string& name, bool with_change) {
