@@ -1,6 +1,6 @@
 #pragma once
-/// Transport of suspended sediment through the virtual pipes (donor-cell scheme): a cell that gives a share
-/// of its water gives the same share of its sediment.
+/// Transport of suspended sediment through the faces between cells (donor-cell scheme): a cell that gives a
+/// share of its water gives the same share of its sediment.
 ///
 ///   S_i += Σ_in S_j q_j/w_j − Σ_out S_i q_i/w_i
 ///
@@ -10,9 +10,9 @@
 /// fast or bends, and builds ridges one cell wide there.
 
 #include "kernels/field/ledger.hpp"
-#include "kernels/water/pipe_flow.hpp"
+#include "kernels/water/face_flow.hpp"
 
-namespace desert_sim::virtual_pipes {
+namespace desert_sim::face_flow {
 
 template <bool inside>
 struct CarrySediment {
@@ -34,4 +34,4 @@ struct CarrySediment {
   }
 };
 
-}  // namespace desert_sim::virtual_pipes
+}  // namespace desert_sim::face_flow

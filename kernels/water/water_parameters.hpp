@@ -1,6 +1,6 @@
 #pragma once
-/// Parameters of the section `water`: springs, pipe flow (virtual_pipes.hpp), the sea, waves, evaporation
-/// (water_sources.hpp).
+/// Parameters of the section `water`: springs, flow (virtual_pipes.hpp, shallow_water.hpp), the sea, waves,
+/// evaporation (water_sources.hpp).
 
 #include <cstddef>
 
@@ -27,13 +27,18 @@ constexpr auto parameter_table(const Spring*) {
 static_assert(table_is_complete<Spring>());
 constexpr std::size_t max_springs = 64;
 
+enum class WaterModel : int { pipes, shallow_water };
+constexpr const char* water_models[] = {"pipes", "shallow_water"};
+
 enum class Sea : int { none, border, everywhere };
 constexpr const char* seas[] = {"none", "border", "everywhere"};
 
 struct WaterParameters {
   bool enabled = false;
+  WaterModel model = WaterModel::pipes;
   float friction = 0.1f;
   float drag = 0.0f;
+  float manning = 0.0f;
   int most_substeps = 64;
   float evaporation = 0.01f;
   Sea sea = Sea::none;
@@ -48,13 +53,19 @@ constexpr auto parameter_table(const WaterParameters*) {
       parameter("enabled", &P::enabled,
                 "Whether there is water on the ground; rain, springs, hydraulic_erosion and moisture bring "
                 "it too."),
+      parameter("model", &P::model, water_models,
+                "pipes: slow water, with long steps; shallow_water: with momentum, for floods and streams."),
       parameter("friction", &P::friction, 0, 100, "1/s",
                 "How fast flow slows down by itself, whatever its depth (c)."),
       parameter("drag", &P::drag, 0, 10, "1",
                 "Drag of the bed, which holds shallow water most (c_f): 0.002 of mud, 0.01 of sand, 0.05 of "
                 "stones; 0: none."),
+      parameter("manning", &P::manning, 0, 1, "s/m^(1/3)",
+                "Manning's n of the bed, which adds to its drag: 0.025 of sand, 0.04 of gravel, 0.07 among "
+                "shrubs; 0: none."),
       parameter("most_substeps", &P::most_substeps, 1, 256, "1",
-                "Most parts that a step is divided into; waves on water that would need more travel slower."),
+                "Most parts that a step of pipes is divided into; waves on water that would need more travel "
+                "slower."),
       parameter("evaporation", &P::evaporation, 0, 10, "1/s",
                 "Share of standing water that evaporates a second."),
       parameter(

@@ -155,10 +155,15 @@ void BenchTerrain::flow(const WaterParameters& p, float time_step, double time, 
   for (Layer layer : {Layer::water, Layer::water_flux_x, Layer::water_flux_y, Layer::water_velocity_x,
                       Layer::water_velocity_y, Layer::wind_x, Layer::wind_y})
     terrain.allocate(layer);
-  virtual_pipes::Workspace work{Buffer<float>(exec(), cells())};
+  const face_flow::StepInputs in{time_step, time, 7, rolls_++, sea_level, landed.data()};
   with_backend(exec(), [&](auto& e) {
-    virtual_pipes::step(e, terrain.view(), p, {time_step, time, 7, rolls_++, sea_level, landed.data()},
-                        ledger(), work);
+    if (p.model == WaterModel::pipes) {
+      virtual_pipes::Workspace work{Buffer<float>(exec(), cells())};
+      virtual_pipes::step(e, terrain.view(), p, in, ledger(), work);
+    } else {
+      shallow_water::Workspace work(exec(), grid());
+      shallow_water::step(e, terrain.view(), p, in, ledger(), work);
+    }
   });
   exec().synchronise();
 }

@@ -24,6 +24,7 @@
 #include "kernels/view/layer_values.hpp"
 #include "kernels/water/hydraulic_erosion.hpp"
 #include "kernels/water/rain.hpp"
+#include "kernels/water/shallow_water.hpp"
 #include "kernels/water/virtual_pipes.hpp"
 #include "kernels/water/water_sources.hpp"
 #include "kernels/wind/echo_dunes.hpp"

@@ -136,6 +136,13 @@ std::vector<Case> process_cases(bool transforms) {
       terrain + soil + obstacles + wind + wet +
           "water: {enabled: true, sea: border, sea_level: 2.5, wave_strength: 0.05, wave_period: "
           "4, most_substeps: 6}\n");
+  add("shallow water, rivers", terrain + soil + wind + wet +
+                                   "water: {model: shallow_water, manning: 0.03, drag: 0.01, " + springs +
+                                   "}\n");
+  add("shallow water, sea, waves",
+      terrain + soil + obstacles + wind + wet +
+          "water: {enabled: true, model: shallow_water, sea: border, sea_level: 2.5, wave_strength: 0.05, "
+          "wave_period: 4}\n");
   add("a flood dries",
       terrain + soil +
           "  - uniform: {layer: water, value: 2}\n"

@@ -69,7 +69,7 @@ struct MemoryTraffic {
 };
 
 /// What a process is there for, where others could be in its place: each role has one active process.
-enum class Role { wind, wind_shadow, sand_flux, sand_transport, repose, reptation, avalanching };
+enum class Role { wind, wind_shadow, sand_flux, sand_transport, repose, reptation, avalanching, water_flow };
 
 struct Process {
   std::string name;

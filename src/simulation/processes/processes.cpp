@@ -35,6 +35,7 @@ const ProcessTable& process_table() {
                                       // Water.
                                       rain_process(),
                                       virtual_pipes_process(),
+                                      shallow_water_process(),
                                       hydraulic_erosion_process(),
                                       moisture_process(),
                                       evaporation_process(),

@@ -38,6 +38,7 @@ Process slide_looseness_process();
 
 Process rain_process();  // water.cpp
 Process virtual_pipes_process();
+Process shallow_water_process();
 Process hydraulic_erosion_process();
 Process moisture_process();
 Process evaporation_process();

@@ -7,6 +7,7 @@
 #include "kernels/soil/soil.hpp"
 #include "kernels/water/hydraulic_erosion.hpp"
 #include "kernels/water/rain.hpp"
+#include "kernels/water/shallow_water.hpp"
 #include "kernels/water/virtual_pipes.hpp"
 #include "kernels/water/water_sources.hpp"
 #include "src/scenario/section_with_list.hpp"
@@ -78,13 +79,48 @@ virtual_pipes::Workspace make_pipes(const SimulationState& state) {
   return {Buffer<float>(state.exec(), static_cast<std::size_t>(state.terrain.grid().cells()))};
 }
 
-void move_water(StepContext& c, ProcessWorkspace* workspace) {
+face_flow::StepInputs flow_inputs(StepContext& c) {
+  return {c.time_step(), c.time(),           c.scenario().seed,
+          c.tick(),      sea_level(c.state), c.fields.scratch<Quanta>(1)};
+}
+
+void move_through_pipes(StepContext& c, ProcessWorkspace* workspace) {
   with_backend(c.exec(), [&](auto& e) {
-    const virtual_pipes::StepInputs in{c.time_step(), c.time(),           c.scenario().seed,
-                                       c.tick(),      sea_level(c.state), c.fields.scratch<Quanta>(1)};
-    virtual_pipes::step(e, c.terrain, c.scenario().get<WaterParameters>(), in, c.state.ledger(),
+    virtual_pipes::step(e, c.terrain, c.scenario().get<WaterParameters>(), flow_inputs(c), c.state.ledger(),
                         workspace_as<virtual_pipes::Workspace>(workspace));
   });
+}
+
+shallow_water::Workspace make_velocities(const SimulationState& state) {
+  return {state.exec(), state.terrain.grid()};
+}
+
+void move_with_momentum(StepContext& c, ProcessWorkspace* workspace) {
+  with_backend(c.exec(), [&](auto& e) {
+    shallow_water::step(e, c.terrain, c.scenario().get<WaterParameters>(), flow_inputs(c), c.state.ledger(),
+                        workspace_as<shallow_water::Workspace>(workspace));
+  });
+}
+
+/// Whether water is simulated, and this is its model.
+template <WaterModel model>
+bool has_water_model(const Scenario& s) {
+  return has_water(s) && s.get<WaterParameters>().model == model;
+}
+
+/// What the models of water have in common.
+Process water_model(const char* name) {
+  Process p;
+  p.name = name;
+  p.roles = {Role::water_flow};
+  p.parameters = {water_section};
+  p.reads = {Layer::bedrock, Layer::soil, Layer::sand, Layer::wind_x, Layer::wind_y};
+  p.writes = {Layer::water, Layer::water_flux_x, Layer::water_flux_y, Layer::water_velocity_x,
+              Layer::water_velocity_y};
+  p.writes_if_in_use = {Layer::suspended_sediment};
+  p.highest = highest_water;
+  p.can_be_recorded = cannot_be_recorded;
+  return p;
 }
 
 hydraulic_erosion::Workspace make_capacity(const SimulationState& state) {
@@ -139,20 +175,22 @@ Process rain_process() {
 }
 
 Process virtual_pipes_process() {
-  Process p;
-  p.name = "virtual_pipes";
-  p.parameters = {water_section};
+  Process p = water_model("virtual_pipes");
   p.source = "Mei 2007, Nilles 2025 §3.4";
   p.header = "kernels/water/virtual_pipes.hpp";
-  p.active = has_water;
-  p.reads = {Layer::bedrock, Layer::soil, Layer::sand, Layer::wind_x, Layer::wind_y};
-  p.writes = {Layer::water, Layer::water_flux_x, Layer::water_flux_y, Layer::water_velocity_x,
-              Layer::water_velocity_y};
-  p.writes_if_in_use = {Layer::suspended_sediment};
-  p.highest = highest_water;
+  p.active = has_water_model<WaterModel::pipes>;
   set_workspace<virtual_pipes::Workspace>(p, make_pipes);
-  p.step = move_water;
-  p.can_be_recorded = cannot_be_recorded;
+  p.step = move_through_pipes;
+  return p;
+}
+
+Process shallow_water_process() {
+  Process p = water_model("shallow_water");
+  p.source = "Stelling & Duinmeijer 2003";
+  p.header = "kernels/water/shallow_water.hpp";
+  p.active = has_water_model<WaterModel::shallow_water>;
+  set_workspace<shallow_water::Workspace>(p, make_velocities);
+  p.step = move_with_momentum;
   return p;
 }
 

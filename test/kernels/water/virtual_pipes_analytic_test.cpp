@@ -127,6 +127,24 @@ TEST_P(Water, TooFewPartsMakeDeepWavesSlowerButStable) {
   for (Quanta w : t.quanta(Layer::water)) ASSERT_NEAR(w * std::ldexp(1.0, -20), 20, 1.0);
 }
 
+/// At the limit of stability itself, columns of cells that swing against each other grew until they were dry
+/// and twice as deep (30 s in 64 parts: 2 g h Δt² = l²); and where friction leaves nothing of a flux, half of
+/// that depth is the limit (30 min).
+TEST_P(Water, AnUnevenPondIsStillOneAfterLongSteps) {
+  for (const auto& [step, friction] : {std::pair{30.0f, 0.0f}, {30.0f, 0.1f}, {1800.0f, 0.1f}}) {
+    test::BenchTerrain t(exec(), 32, 32);
+    t.set(Layer::water, [](int x, int y) {
+      const double dx = x - 15.5, dy = y - 15.5;
+      return 1 + 0.01 * std::exp(-(dx * dx + dy * dy) / 32);
+    });
+    WaterParameters p;
+    p.friction = friction;
+    for (int n = 0; n < 50; ++n) t.flow(p, step);
+    for (Quanta w : t.quanta(Layer::water))
+      ASSERT_NEAR(w * std::ldexp(1.0, -20), 1, 0.011) << "steps of " << step << " s, friction " << friction;
+  }
+}
+
 /// Thacker's planar slosh in a parabolic basin H = D (r/a)², period 2π a/√(2 g D).
 TEST_P(Water, PlanarSloshKeepsPeriodAndAmplitude) {
   const int cells = 160;

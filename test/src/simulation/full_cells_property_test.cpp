@@ -56,11 +56,12 @@ TEST_P(FullCells, ASeaAroundDeepGroundFlowsIn) {
 /// The datum is half way up: water is deeper than walls are high above it.
 TEST_P(FullCells, ASeaThatIsAsDeepAsTheTerrainIsHigh) {
   for (const std::string level : {"1000", "1e6"}) {
-    const auto s = filled(open_sand +
-                              "wind: {speed: 3}\nwater: {enabled: true, sea: border, wave_strength: 0.1, "
-                              "sea_level: " +
-                              level + "}\n",
-                          60);
+    const auto s = filled(
+        open_sand +
+            "wind: {speed: 3}\nwater: {enabled: true, sea: border, wave_strength: 0.1, most_substeps: 256, "
+            "sea_level: " +
+            level + "}\n",
+        60);
     EXPECT_GT(deepest_, wall_height) << level;
     const test::TemporaryFolder folder;
     save_checkpoint(folder.path("deep"), *s);

@@ -106,6 +106,12 @@ const std::map<std::string, std::string> worlds{
      "grid: {width: 40, height: 36, boundary: open}\n"
      "terrain: [uniform: {layer: sand, value: 2}]\nwind: {speed: 5, direction_deg: 20}\n"
      "saltation: {influx: 100}\n"},
+    {"flood",
+     "grid: {width: 40, height: 36, boundary: open}\n"
+     "terrain: [noise: {layer: bedrock, low: 0, high: 8, scale: 9}, uniform: {layer: soil, value: 0.4},\n"
+     "  uniform: {layer: sand, value: 0.3}, noise: {layer: water, low: 0, high: 3, scale: 8}]\n"
+     "wind: {speed: 5, direction_deg: 20}\nhydraulic_erosion: {enabled: true}\n"
+     "water: {model: shallow_water, manning: 0.03, wave_strength: 0.1, sea: border, sea_level: 1}\n"},
     {"still",
      "grid: {width: 40, height: 36}\nterrain: [noise: {layer: sand, low: 0, high: 9, scale: 3}]\n"
      "saltation: {enabled: false}\navalanching: {scheme: sweeps, sweeps: 3}\nwind_shadow: {curved: true}\n"},
