@@ -12,7 +12,8 @@ if(TARGET desert_physics)
   target_compile_options(desert_physics PRIVATE ${DESERT_PHYSICS_OPTIONS})
   target_compile_definitions(desert_physics PRIVATE ${DESERT_ONLY_INSTRUCTIONS})
   set_source_files_properties(kernels/avalanching/avalanching.cpp kernels/avalanching/tile.cpp kernels/sand/saltation.cpp
-    kernels/water/hydraulic_erosion.cpp kernels/water/virtual_pipes.cpp kernels/wind/wind.cpp
+    kernels/water/hydraulic_erosion.cpp kernels/water/shallow_water.cpp kernels/water/virtual_pipes.cpp
+    kernels/wind/wind.cpp
     PROPERTIES COMPILE_OPTIONS "${DESERT_UNSWITCH_OPTIONS}"
     SKIP_PRECOMPILE_HEADERS ON) # GCC would take the --param of the header, and not say so
   target_link_libraries(desert_physics PUBLIC ${DESERT_CUDA_LIBRARIES})

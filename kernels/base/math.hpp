@@ -112,9 +112,9 @@ DESERT_HD float logarithm(float x) {
 
 /// x^y for x ≥ 0 and a result from e^(−87) to e^(87), with a relative error below 1e-6 · (1 + |y ln x|).
 DESERT_HD float power(float x, float y) {
-  if (!(x > 1e-37f)) return 0.0f;
-  const float exponent = y * logarithm(x);
-  return exponent <= 0.0f ? exp_negative(-exponent) : 1.0f / exp_negative(exponent);
+  const float exponent = y * logarithm(x), small = exp_negative(fabsf(exponent));
+  const float result = exponent <= 0.0f ? small : 1.0f / small;
+  return x > 1e-37f ? result : 0.0f;
 }
 
 /// sin(π x) for |x| ≤ ½, with an error below 2e-7: its Taylor polynomial of degree 11.

@@ -28,7 +28,6 @@ struct Face {
   DESERT_HD static Quanta positive(Quanta v) { return v > 0 ? v : 0; }
   /// min(w, 2 over)
   DESERT_HD static Quanta moving(Quanta water, Quanta over) { return over < water - over ? 2 * over : water; }
-  DESERT_HD bool dry() const { return depth_i == 0 && depth_j == 0; }
   DESERT_HD bool level() const { return drop <= 1 && drop >= -1; }
   /// h_f [m] of water that moves with this velocity.
   DESERT_HD float depth(const FlowFields& flow, float velocity) const {
@@ -37,13 +36,13 @@ struct Face {
   /// h_m [m]. `behind`: the depth of the cell upstream of the upstream one, −1 if there is none [quanta]
   DESERT_HD float mixed_depth(const FlowFields& flow, float velocity, Quanta behind) const {
     const float upstream = depth(flow, velocity), downstream = depth(flow, -velocity);
-    if (!(downstream > 0.0f && upstream > 0.0f)) return upstream;
+    const bool wet = downstream > 0.0f && upstream > 0.0f;
     const float ahead = 0.5f * (downstream - upstream);
     const float before = behind < 0 ? 0.0f : 0.5f * (upstream - static_cast<float>(behind) * flow.quantum);
     const float least = ahead * before > 0.0f ? (fabsf(ahead) < fabsf(before) ? ahead : before) : 0.0f;
     const float most = 0.25f * upstream, half = clamp(ahead, -most, most);
-    const float slow = maximum(1.0f - fabsf(velocity) / sqrtf(gravity * upstream), 0.0f);
-    return upstream + (slow * half + (1.0f - slow) * least);
+    const float slow = maximum(1.0f - fabsf(velocity) / sqrtf(gravity * (wet ? upstream : 1.0f)), 0.0f);
+    return wet ? upstream + (slow * half + (1.0f - slow) * least) : upstream;
   }
 };
 
@@ -70,7 +69,11 @@ struct Speed {
   const float *velocity_x, *velocity_y;
 
   DESERT_HD float operator()(int x, int y) const {
-    const int i = flow.grid.index(x, y), west = flow.west(x, y), south = flow.south(x, y);
+    const int i = flow.grid.index(x, y);
+    return x > 0 && y > 0 ? speed(i, i - 1, i - flow.grid.width)
+                          : speed(i, flow.west(x, y), flow.south(x, y));
+  }
+  DESERT_HD float speed(int i, int west, int south) const {
     const float depth = static_cast<float>(flow.water[i]) * flow.quantum;
     const float u = maximum(fabsf(velocity_x[i]), west >= 0 ? fabsf(velocity_x[west]) : 0.0f);
     const float v = maximum(fabsf(velocity_y[i]), south >= 0 ? fabsf(velocity_y[south]) : 0.0f);
@@ -132,23 +135,27 @@ struct Accelerate {
     if (waves.strength > 0.0f) pull += waves.pull(flow, i, j, wind);
     float mean =
         0.5f * (static_cast<float>(flow.water[i]) + static_cast<float>(flow.water[j])) * flow.quantum;
-    if (in.change * own > 0.0f) mean = maximum(mean, face.depth(flow, own));
+    mean = in.change * own > 0.0f ? maximum(mean, face.depth(flow, own)) : mean;
     // No more than all of a volume is replaced in a sub-step.
     const float share = minimum(dt / (l * l * maximum(mean, film)), 1.0f / (in.sum + 1e-20f));
     const float pushed = friction * ((own - share * in.change) + dt * pull);
     const float depth = face.depth(flow, pushed);
-    if (!(depth > film)) return 0.0f;
-    return pushed * left_by_drag(hypotenuse(pushed, in.across), drag.of(depth) * dt / depth);
+    const float held = maximum(depth, film);
+    const float found = pushed * left_by_drag(hypotenuse(pushed, in.across), drag.of(held) * dt / held);
+    return depth > film ? found : 0.0f;
   }
 
   /// Stores the velocity on a face and the flux through it.
   DESERT_HD void store(const Face<inside>& face, float found, int behind, int i, int j, int ahead,
                        float* velocity, float* flux) const {
     const float l = flow.grid.cell_size;
-    const int upstream = found > 0.0f ? behind : ahead;
-    float through = found * (l * face.mixed_depth(flow, found, upstream >= 0 ? flow.water[upstream] : -1));
-    if (face.level() && flow.amount(fabsf(through)) < 0.5f) through = found = 0.0f;
-    velocity[i] = found;
+    const Quanta before_i = inside || behind >= 0 ? flow.water[behind] : -1,
+                 before_j = inside || ahead >= 0 ? flow.water[ahead] : -1;
+    const float depth = face.mixed_depth(flow, found, found > 0.0f ? before_i : before_j);
+    const float wanted = found * (l * depth);
+    const bool stops = face.level() && flow.amount(fabsf(wanted)) < 0.5f;
+    const float through = stops ? 0.0f : wanted;
+    velocity[i] = stops ? 0.0f : found;
     flux[i] = clamp(through, -flow.most_flux_into(flow.bed(i) + flow.water[i]),
                     flow.most_flux_into(flow.bed(j) + flow.water[j]));
   }
@@ -157,24 +164,23 @@ struct Accelerate {
     const int i = flow.grid.index(x, y);
     const int east = flow.east(x, y), west = flow.west(x, y), north = flow.north(x, y),
               south = flow.south(x, y);
-    velocity_x[i] = velocity_y[i] = flow.flux_x[i] = flow.flux_y[i] = 0.0f;
     if (inside || east >= 0) {
       const Face<inside> face(flow, i, east);
-      if (!face.dry()) {
-        const Inflow in = inflow(before.velocity_x, before.flux_x, before.velocity_y, before.flux_y, west, i,
-                                 east, north, south, inside || south >= 0 ? flow.south(x + 1, y) : -1);
-        store(face, accelerated(face, in, i, east, before.velocity_x[i], waves.wind_x), west, i, east,
-              flow.east(x + 1, y), velocity_x, flow.flux_x);
-      }
+      const Inflow in = inflow(before.velocity_x, before.flux_x, before.velocity_y, before.flux_y, west, i,
+                               east, north, south, inside || south >= 0 ? flow.south(x + 1, y) : -1);
+      store(face, accelerated(face, in, i, east, before.velocity_x[i], waves.wind_x), west, i, east,
+            flow.east(x + 1, y), velocity_x, flow.flux_x);
+    } else {
+      velocity_x[i] = flow.flux_x[i] = 0.0f;
     }
     if (inside || north >= 0) {
       const Face<inside> face(flow, i, north);
-      if (!face.dry()) {
-        const Inflow in = inflow(before.velocity_y, before.flux_y, before.velocity_x, before.flux_x, south, i,
-                                 north, east, west, inside || west >= 0 ? flow.west(x, y + 1) : -1);
-        store(face, accelerated(face, in, i, north, before.velocity_y[i], waves.wind_y), south, i, north,
-              flow.north(x, y + 1), velocity_y, flow.flux_y);
-      }
+      const Inflow in = inflow(before.velocity_y, before.flux_y, before.velocity_x, before.flux_x, south, i,
+                               north, east, west, inside || west >= 0 ? flow.west(x, y + 1) : -1);
+      store(face, accelerated(face, in, i, north, before.velocity_y[i], waves.wind_y), south, i, north,
+            flow.north(x, y + 1), velocity_y, flow.flux_y);
+    } else {
+      velocity_y[i] = flow.flux_y[i] = 0.0f;
     }
   }
 };
