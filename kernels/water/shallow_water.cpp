@@ -202,8 +202,8 @@ struct KeepFluxes {
 };
 
 template <class E>
-int step(E& exec, const TerrainView& t, const WaterParameters& p, const StepInputs& in, LedgerView ledger,
-         Workspace& work) {
+void step(E& exec, const TerrainView& t, const WaterParameters& p, const StepInputs& in, LedgerView ledger,
+          Workspace& work) {
   FlowFields flow = flow_fields(t, p, in, work.supply_share.data());
   flow.passes_through = true;
   float *const kept_x = flow.flux_x, *const kept_y = flow.flux_y;
@@ -234,10 +234,9 @@ int step(E& exec, const TerrainView& t, const WaterParameters& p, const StepInpu
   flow.flux_x = kept_x;
   flow.flux_y = kept_y;
   for_each_flow<KeepFluxes>(exec, flow, work.velocity_x[n % 2].data(), work.velocity_y[n % 2].data());
-  return n;
 }
 
-template int step(Backend&, const TerrainView&, const WaterParameters&, const StepInputs&, LedgerView,
-                  Workspace&);
+template void step(Backend&, const TerrainView&, const WaterParameters&, const StepInputs&, LedgerView,
+                   Workspace&);
 
 }  // namespace desert_sim::shallow_water

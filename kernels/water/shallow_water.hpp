@@ -50,9 +50,9 @@ struct Workspace {
   std::size_t bytes() const;
 };
 
-/// Copies the greatest speed to the host before each sub-step. Returns the number of sub-steps.
+/// Copies the greatest speed to the host before each sub-step.
 template <class E>
-int step(E& exec, const TerrainView& t, const WaterParameters& p, const face_flow::StepInputs& in,
-         LedgerView ledger, Workspace& work);
+void step(E& exec, const TerrainView& t, const WaterParameters& p, const face_flow::StepInputs& in,
+          LedgerView ledger, Workspace& work);
 
 }  // namespace desert_sim::shallow_water
