@@ -195,15 +195,15 @@ struct Prepare {
     to.lying[n] = solid ? 0 : sand[i];
   }
 
-  /// What the influx over open edges brings to a cell [quanta]: to the first line, and to the cells at a side
-  /// from which the wind blows in.
+  /// What the influx over open edges brings to a cell [quanta]: to the first line, and behind it to the cells
+  /// at a side from which the wind blows in.
   DESERT_HD Quanta over_edge(int x, int y, int i) const {
     if (inside || !(influx > 0.0f)) return 0;
     const float shift = drift.shift, path = sqrtf(1.0f + shift * shift);
     float share = !order.periodic_along() && order.line_of(x, y) == 0 ? 1.0f : 0.0f;
     if (!order.periodic_across()) {
       const int place = order.place_of(x, y), from_side = shift > 0.0f ? place : order.length() - 1 - place;
-      share += clamp(fabsf(shift) - static_cast<float>(from_side), 0.0f, 1.0f);
+      share = maximum(share, clamp(fabsf(shift) - static_cast<float>(from_side), 0.0f, 1.0f));
     }
     const Quanta wanted = influx_die.whole_at_most(share * influx * depth_per_flux / path, most_influx, i);
     const Quanta amount =

@@ -123,25 +123,24 @@ struct Influx {
   Quanta* landed;
   LedgerView ledger;
 
-  /// Depth [m] that one edge brings to the cell which lies `cell` cells from it; `speed`: of the wind into
-  /// the grid [m/s].
+  /// Share of what lands in the cell which lies `cell` cells from an edge that has hopped over this edge;
+  /// `speed`: of the wind into the grid [m/s].
   DESERT_HD float over_edge(int cell, float speed) const {
     const float l = in.grid.cell_size, hop = speed * in.hop_time;
-    if (!(hop > 0.0f)) return 0.0f;
-    return influx * (in.hop_share * in.hop_time) / hop * clamp((hop - cell * l) / l, 0.0f, 1.0f);
+    return clamp((hop - cell * l) / l, 0.0f, 1.0f);
   }
 
-  /// Depth [m] that all edges bring to a cell.
+  /// Depth [m] that all edges bring to a cell. In a corner sand comes over either edge, and some of it over
+  /// both, which counts once.
   DESERT_HD float over_edges(int x, int y) const {
     const Grid& g = in.grid;
     const int i = g.index(x, y);
     const float u = in.wind_x[i], v = in.wind_y[i];
     const float speed = hypotenuse(u, v);
-    float depth = 0.0f;
-    if (!(speed > 1e-6f)) return depth;
-    if (!g.periodic_x) depth += over_edge(u > 0.0f ? x : g.width - 1 - x, fabsf(u)) * fabsf(u) / speed;
-    if (!g.periodic_y) depth += over_edge(v > 0.0f ? y : g.height - 1 - y, fabsf(v)) * fabsf(v) / speed;
-    return depth;
+    if (!(speed > 1e-6f)) return 0.0f;
+    const float over_x = g.periodic_x ? 0.0f : over_edge(u > 0.0f ? x : g.width - 1 - x, fabsf(u));
+    const float over_y = g.periodic_y ? 0.0f : over_edge(v > 0.0f ? y : g.height - 1 - y, fabsf(v));
+    return influx * in.hop_share / speed * (over_x + over_y - over_x * over_y);
   }
 
   DESERT_HD void operator()(int x, int y) const {
