@@ -14,7 +14,7 @@
 ///
 ///   multilevel      (default) One multigrid cycle a step. The fine grid is relaxed briefly, so that small
 ///                   slides end where they are; ground and sand are restricted (averaged two by two) until
-///                   cells are `coarsest_cell` wide; then each level, from the coarsest to the finest, is
+///                   cells are `coarsest_cell` wide (four cells of the grid); then each level, from the coarsest to the finest, is
 ///                   relaxed, and its change prolonged to the four children of each cell. With quality
 ///                   `converged` more passes follow until the tolerance is met, which can be as low as 2e-4
 ///                   (relax_until_converged()).

@@ -15,7 +15,7 @@ struct AvalanchingParameters {
   AvalancheScheme scheme = AvalancheScheme::multilevel;
   AvalancheQuality quality = AvalancheQuality::good;
   float transfer = 1.0f;
-  float coarsest_cell = 4.0f;
+  float coarsest_cell = 0.0f;
   int last_passes = 0;
   int sweeps = 50;
   float tolerance = 0.001f;
@@ -35,8 +35,8 @@ constexpr auto parameter_table(const AvalanchingParameters*) {
                 "converged: until tolerance (also for sweeps)."),
       parameter("transfer", &P::transfer, 0.05, 1, "1",
                 "Share of what would stabilise a cell that one sweep moves (k_c)."),
-      parameter("coarsest_cell", &P::coarsest_cell, 0.001, 1000, "m",
-                "Width of cells at which coarsening stops."),
+      parameter("coarsest_cell", &P::coarsest_cell, 0, 1000, "m",
+                "Width of cells at which coarsening stops; 0: four cells of the grid."),
       parameter("last_passes", &P::last_passes, 0, 16, "1",
                 "Passes over the fine grid after the coarse levels, each with the sweeps of large "
                 "grids; 0: by quality and grid."),

@@ -68,6 +68,23 @@ TEST_P(Column, SlidesToAHeapAtReposeWithMultilevel) {
   EXPECT_GE(*least / mean, 0.96) << *least << " to " << *greatest << " m";
 }
 
+/// The coarse levels have cells of 2 m here: with cells of 4 m the cone was 12.6 m high.
+TEST_P(Column, SlidesToAConeOfTheSameAngleOnHalfMetreCells) {
+  constexpr int n = 128;
+  test::BenchTerrain t(exec(), n, n, 0.5, true);
+  t.set(Layer::sand, [](int x, int y) { return x >= 52 && x < 77 && y >= 52 && y < 77 ? 40 : 0; });
+  const double tangent = std::tan(33 * 3.14159265358979 / 180);
+  t.set_repose([&](int, int) { return tangent; });
+  AvalanchingParameters p;
+  p.quality = AvalancheQuality::converged;
+  EXPECT_LT(t.avalanche(p), p.max_iterations);
+  const std::vector<float> sand = t.terrain.values(Layer::sand);
+  const double height = *std::max_element(sand.begin(), sand.end());
+  const double volume = 12.5 * 12.5 * 40, cone = std::cbrt(3 * volume * tangent * tangent / 3.14159265358979);
+  EXPECT_GE(height, 0.98 * cone);
+  EXPECT_LE(height, 1.06 * cone) << "of a pyramid of eight sides";
+}
+
 /// A quarter of the size for the reference scheme, which takes many more sweeps. The coarse levels, of four
 /// cells across so small a column, take more off its top.
 TEST_P(Column, SlidesToTheSameHeapWithSweepsAndMultilevel) {

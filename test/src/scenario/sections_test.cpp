@@ -156,7 +156,7 @@ TEST(ScenarioRoundTrip, ExtremeValuesThatTheLoaderTakesSurviveToo) {
   for (const char* yaml :
        {"avalanching: {tolerance: 1e-6}", "run: {time_step: 1e-4}", "wind: {features: [{life_time: 0.01}]}",
         "repose: {moisture_capacity: 0.001}", "wind: {hold_time: 1e-3}", "grid: {cell_size: 1e-3}",
-        "avalanching: {coarsest_cell: 0.001}", "avalanching: {transfer: 0.05}",
+        "avalanching: {coarsest_cell: 0}", "avalanching: {transfer: 0.05}",
         "wind: {features: [{radius: 0.1}]}"})
     expect_round_trip(test::scenario_of(yaml));
 }
