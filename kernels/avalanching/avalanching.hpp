@@ -14,10 +14,10 @@
 ///
 ///   multilevel      (default) One multigrid cycle a step. The fine grid is relaxed briefly, so that small
 ///                   slides end where they are; ground and sand are restricted (averaged two by two) until
-///                   cells are `coarsest_cell` wide (four cells of the grid); then each level, from the coarsest to the finest, is
-///                   relaxed, and its change prolonged to the four children of each cell. With quality
-///                   `converged` more passes follow until the tolerance is met, which can be as low as 2e-4
-///                   (relax_until_converged()).
+///                   cells are `coarsest_cell` wide, or four cells of the grid; then each level, from the
+///                   coarsest to the finest, is relaxed, and its change prolonged to the four children of
+///                   each cell. With quality `converged` more passes follow until the tolerance is met, which
+///                   can be as low as 2e-4 (relax_until_converged()).
 ///   sweeps          Synchronous sweeps (Jacobi) of the whole grid by the equations above; the reference.
 ///   taylor_keyser   Synchronous sweeps that release ¼ k_c of the largest drop, distributed by tangents; for
 ///                   comparison.

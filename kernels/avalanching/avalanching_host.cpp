@@ -15,8 +15,8 @@ Grid coarser(const Grid& g) {
 }
 
 /// Width of the coarsest level's cells, in those of the grid, where the scenario leaves it open. Each level
-/// more lets a slide run on where a finer one would have stopped it: a column on cells of 0.5 m ends as a cone
-/// of 12.6 m with levels up to 4 m, and of 13.9 m with levels up to 2 m.
+/// more lets a slide run on where a finer one would have stopped it: a column on cells of 0.5 m ends as a
+/// cone of 12.6 m with levels up to 4 m, and of 13.9 m with levels up to 2 m.
 constexpr float coarsest_cells = 4.0f;
 
 /// Grids of the coarse levels, the finest first.
