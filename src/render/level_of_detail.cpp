@@ -11,9 +11,9 @@ constexpr double reluctance = 0.25;  // a level is kept until another one is bet
 
 int level_for(double stride, int present) {
   if (!(stride > 1)) return 0;  // also NaN
-  const double exact = std::min(std::log2(stride), static_cast<double>(BlockLayout::max_level));
+  const double exact = std::log2(stride);
   if (present >= 0 && exact > present - reluctance && exact < present + 1 + reluctance) return present;
-  return static_cast<int>(exact);
+  return static_cast<int>(std::min(exact, static_cast<double>(BlockLayout::max_level)));
 }
 
 }  // namespace

@@ -55,6 +55,17 @@ TEST(Complaint7, OrthographicViewsHaveOneLevelByScaleWhereverTheCameraIs) {
   }
 }
 
+/// From far away a block that was drawn at the level before the coarsest one kept that.
+TEST(Complaint7, TheCoarsestLevelIsReachedFromEachOther) {
+  const BlockLayout layout(1024, 1024);
+  const std::vector<Box> boxes = flat_boxes(layout, 1);
+  const View view(orthographic(8000), camera_at(512, 512, 100, -90), picture_height);
+  for (int present = -1; present <= BlockLayout::max_level; ++present)
+    for (const int level :
+         choose_levels(layout, 1, view, boxes, std::vector<int>(boxes.size(), present), {4, 100000000}))
+      EXPECT_EQ(level, BlockLayout::max_level) << "from " << present;
+}
+
 TEST(Complaint7, PerspectiveFromAboveAgreesWithTheOrthographicViewOfThatScale) {
   const BlockLayout layout(256, 256);
   const View from_above(perspective(), camera_at(128, 128, 900, -90),
