@@ -187,6 +187,8 @@ class Run:
                                      text=True).stdout.strip()
 
     def work(self, copy):
+        for program in sorted({m.killer.split(" ")[0] for m in self.mutations}):
+            copy.make(program + "_tests")  # with all that the targets /fast of a mutation take for granted
         while True:
             with self.lock:
                 if not self.files:
