@@ -85,7 +85,7 @@ TEST_P(ContinuumDunes, InfluxIntoACornerIsThatOfItsEdges) {
       "grid: {width: 40, height: 40, boundary: open}\nterrain: [uniform: {layer: sand, value: 5}]\n"
       "wind: {speed: 9, direction_deg: 45}\nsand: {model: continuum}\nsaltation: {influx: 1.0e-5}\n",
       600, 200 * 600);
-  const std::vector<float> sand = test::real(*s, Layer::sand);
+  const std::vector<float> sand = s->terrain().values(Layer::sand);
   const double corner = sand[0], along_x = sand[8], along_y = sand[8 * 40];
   EXPECT_NEAR(corner, along_x, 0.05);
   EXPECT_NEAR(corner, along_y, 0.05);

@@ -129,13 +129,14 @@ TEST_P(Water, TooFewPartsMakeDeepWavesSlowerButStable) {
 
 /// At the limit of stability itself, columns of cells that swing against each other grew until they were dry
 /// and twice as deep (30 s in 64 parts: 2 g h Δt² = l²); and where friction leaves nothing of a flux, half of
-/// that depth is the limit (30 min).
+/// that depth is the limit (30 min). The pond is uneven by a millimetre from cell to cell, because a smooth
+/// swell has so little of the shortest wave that it stands 50 steps at the limit.
 TEST_P(Water, AnUnevenPondIsStillOneAfterLongSteps) {
   for (const auto& [step, friction] : {std::pair{30.0f, 0.0f}, {30.0f, 0.1f}, {1800.0f, 0.1f}}) {
     test::BenchTerrain t(exec(), 32, 32);
     t.set(Layer::water, [](int x, int y) {
       const double dx = x - 15.5, dy = y - 15.5;
-      return 1 + 0.01 * std::exp(-(dx * dx + dy * dy) / 32);
+      return 1 + 0.01 * std::exp(-(dx * dx + dy * dy) / 32) + ((x + y) % 2 == 0 ? 0.001 : -0.001);
     });
     WaterParameters p;
     p.friction = friction;
