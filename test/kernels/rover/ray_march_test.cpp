@@ -64,6 +64,30 @@ TEST_F(RayMarch, MeasuresASlope) {
   EXPECT_NEAR(static_cast<double>(image.intensities[0]), 0.35 * incidence, 1e-5);
 }
 
+/// The ground h = (x − ½)(y − ½)/10 is twisted in every patch: a beam meets the slope at the hit, not that
+/// where it enters the patch. The other tests of intensities have planes.
+TEST_F(RayMarch, MeasuresTheSlopeWhereItHits) {
+  const KnownScene twisted(exec_, {12, 12, 1, 0, 0},
+                           [](int x, int y) { return 0.1f * static_cast<float>(x * y); });
+  Lidar lidar(exec_, test::exact_lidar(16, 64, -80, -30));
+  const SensorPose pose = pose_from_angles(3.3, 4.2, 6, 0, 0, 20);
+  const RangeImage& image = lidar.scan(twisted.scene, pose, 0);
+  int seen = 0;
+  for (std::size_t n = 0; n < image.distances.size(); ++n) {
+    if (std::isnan(image.distances[n])) continue;
+    const Point p = test::point_at(pose, lidar.directions()[n], static_cast<double>(image.distances[n])),
+                ahead = test::point_at(pose, lidar.directions()[n], 1);
+    if (p.x < 0.5 || p.y < 0.5 || p.x > 11.5 || p.y > 11.5) continue;  // the ground is level out there
+    const double slope_x = 0.1 * (p.y - 0.5), slope_y = 0.1 * (p.x - 0.5);
+    const double along_normal = (ahead.z - pose.position.z()) - slope_x * (ahead.x - pose.position.x()) -
+                                slope_y * (ahead.y - pose.position.y());
+    const double incidence = std::abs(along_normal) / std::sqrt(1 + slope_x * slope_x + slope_y * slope_y);
+    ASSERT_NEAR(static_cast<double>(image.intensities[n]), 0.35 * incidence, 1e-4) << "beam " << n;
+    ++seen;
+  }
+  EXPECT_GT(seen, 200);
+}
+
 TEST_F(RayMarch, FindsPointsOnAGaussianHill) {
   const KnownScene hill(exec_, {256, 256, 0.5, 100, -300}, [](int x, int y) {
     const float dx = 0.5f * (static_cast<float>(x) - 128), dy = 0.5f * (static_cast<float>(y) - 128);

@@ -54,6 +54,41 @@ TEST_P(ContinuumFlux, FollowsTheLawThatIsNamed) {
   }
 }
 
+/// At u_* = 1.8 u_*t, of grains of half a millimetre. The test before has those of a quarter, for which
+/// d/D = 1 tells nothing.
+TEST(SaturatedFlux, DependsOnTheSizeOfGrainsAsTheSourcesSay) {
+  const double air = 1.225, grain = 2650, d = 0.0005, g = 9.81, packing = 0.6, r = 1.8;
+  const double u_t = 0.1 * std::sqrt((grain / air - 1) * g * d), u = r * u_t,
+               unit = air / g / (grain * packing);
+  const std::pair<FluxLaw, double> laws[] = {
+      {FluxLaw::bagnold, 1.8 * std::sqrt(2.0) * unit * u * u * u},
+      {FluxLaw::kawamura, 2.78 * unit * (u - u_t) * (u + u_t) * (u + u_t)},
+      {FluxLaw::lettau, 4.2 * std::sqrt(2.0) * unit * u * u * (u - u_t)},
+      {FluxLaw::quadratic,
+       7.8 * 0.1 * (0.01 * (r * r - 1)) * d * std::sqrt((grain / air - 1) * g * d) / packing}};
+  ContinuumParameters p;
+  p.grain_diameter = static_cast<float>(d);
+  for (const auto& [law, told] : laws) {
+    p.flux_law = law;
+    const continuum::SaturatedFlux flux(p, 1.0);
+    const double found = flux(static_cast<float>(r * r) * flux.threshold, flux.threshold);
+    EXPECT_NEAR(found / told, 1, 1e-4) << flux_law_names[static_cast<int>(law)];
+  }
+  EXPECT_NEAR(continuum::saturation_length(p), 2.2 * grain / air * d, 1e-4);
+}
+
+/// A twentieth of what the ground can hold leaves it half as dry, and doubles the threshold. Tests had ground
+/// so wet that no wind lifts anything.
+TEST_P(ContinuumFlux, OverMoistSandHasAHigherThreshold) {
+  auto s = simulation(
+      "grid: {width: 32, height: 32}\nterrain: [uniform: {layer: sand, value: 3}, "
+      "uniform: {layer: moisture, value: 0.015}]\n" +
+      windy(1.7, 0) + level + "repose: {moisture_capacity: 0.3}\nrun: {time_step: 300}\n");
+  for (int n = 0; n < 60; ++n) s->step();
+  const double dry = test::flux_of(1.7), told = dry * (1.7 * 1.7 - 2) / (1.7 * 1.7 - 1);
+  EXPECT_NEAR(test::mean(test::real(*s, Layer::flux_x)), told, 0.01 * dry);
+}
+
 TEST_P(ContinuumFlux, IsNothingBelowTheThreshold) {
   auto s = simulation(
       "grid: {width: 24, height: 24}\nterrain: [noise: {layer: sand, low: 1, high: 1.5, scale: 12}]\n" +

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "kernels/slabs/stacks.hpp"
 #include "test/support/cases.hpp"
 #include "test/support/world.hpp"
 
@@ -112,6 +113,26 @@ TEST(SlabLaws, HolesKeepTheSlabsThatTheyWillTake) {
   EXPECT_FALSE(s.lattice.can_give(n));
 }
 
+/// When a step ends, slabs that still roll lie where they are, and holes that do take a slab from there.
+TEST(SlabLaws, SlabsThatStillRollAreSand) {
+  Stacks s(5);
+  const auto pending = [&](int x, int y) -> std::uint32_t& {
+    return s.pending[static_cast<std::size_t>(s.slot(x, y))];
+  };
+  pending(3, 4) = 2 * Lattice::one_slab;
+  pending(9, 7) = Lattice::one_hole;
+  pending(20, 30) = Lattice::one_slab + 3 * Lattice::one_hole;
+  std::vector<Quanta> sand(static_cast<std::size_t>(Stacks::side * Stacks::side), 5 * slab);
+  const PutSand put{s.lattice, nullptr, sand.data(), nullptr};
+  for (int y = 0; y < Stacks::side; ++y)
+    for (int x = 0; x < Stacks::side; ++x) put(x, y);
+  const auto at = [&](int x, int y) { return sand[static_cast<std::size_t>(y * Stacks::side + x)]; };
+  EXPECT_EQ(at(3, 4), 7 * slab);
+  EXPECT_EQ(at(9, 7), 4 * slab);
+  EXPECT_EQ(at(20, 30), 3 * slab);
+  EXPECT_EQ(at(4, 3), 5 * slab);
+}
+
 /// Of a tower of 20 slabs on a bed of 5, one and a half slabs a cell: nine cells, also over the seam.
 TEST(SlabLaws, ShadowFallsByItsAngleAndStacksRiseOutOfIt) {
   for (const int x : {6, 28}) {
@@ -163,6 +184,28 @@ TEST(SlabLaws, MomijiTakesNoSlabFromTheShadow) {
           << x;
     }
   }
+}
+
+/// Each turn of a step polls for itself. Where half of the runs of 16 cells have a poll, two turns poll the
+/// same cell in one run of 64; if turns were alike, in one of two, and the share of polls would be right.
+TEST(SlabLaws, EachTurnPollsCellsOfItsOwn) {
+  Polls polls{SlabPolling::repeated, {}, 0, 0, {5, nullptr}, 0};
+  polls.more_than[0] = 1u << 31;
+  constexpr int runs = 20000;
+  const auto polled = [&](std::uint32_t turn, int n) {
+    polls.turn = turn;
+    int cell = -1;
+    polls.of({0, 0, Colours::longest_run}, Colours::longest_run * n, [&](int of) { cell = of; });
+    return cell;
+  };
+  int once = 0, twice = 0;
+  for (int n = 0; n < runs; ++n) {
+    const int now = polled(3, n), next = polled(4, n);
+    once += now >= 0;
+    twice += now >= 0 && now == next;
+  }
+  EXPECT_NEAR(once / static_cast<double>(runs), 1.0 / 2, 0.016);  // 4.5 standard errors
+  EXPECT_NEAR(twice / static_cast<double>(runs), 1.0 / 64, 0.004);
 }
 
 // ---- flights

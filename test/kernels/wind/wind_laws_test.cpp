@@ -279,6 +279,24 @@ TEST_P(WindLaw, CurvedShadowOfATurningWindIsMirrorSymmetric) {
   EXPECT_EQ(different, 0);
 }
 
+/// The wind over the eastern half has come from the south. Five cells to the west and three to the south
+/// stands a tower, which a straight march does not see. Symmetry does not say which way marches go.
+TEST_P(WindLaw, CurvedShadowFollowsTheWindAsItTurns) {
+  test::BenchTerrain t(exec(), 24, 24, 1, false);
+  t.set(Layer::bedrock, [](int x, int y) { return x == 11 && y == 5 ? 6 : 0; });
+  t.set(Layer::wind_x, [](int x, int) { return x < 12 ? 0 : 5; });
+  t.set(Layer::wind_y, [](int x, int) { return x < 12 ? 5 : 0; });
+  WindShadowParameters p;
+  t.shadow(p);
+  EXPECT_EQ(t.at(Layer::wind_shadow, 16, 8), 0);
+  p.curved = true;
+  p.start_deg = 0;
+  p.full_deg = 80;
+  t.shadow(p);
+  EXPECT_NEAR(t.at(Layer::wind_shadow, 16, 8), 6.0 / 8 / tangent_of(80), 1e-5) << "eight steps";
+  EXPECT_EQ(t.at(Layer::wind_shadow, 16, 11), 0) << "eleven steps are too far";
+}
+
 DESERT_ON_EACH_BACKEND(WindLaw);
 
 }  // namespace

@@ -116,6 +116,19 @@ TEST_F(BeamMedia, AirborneSandFollowsBeerAndLambert) {
       << "above the layer";
 }
 
+/// Whether noise drops a beam has nothing to do with what the beam meets. All beams end in dust so thick; a
+/// quarter of them return, of which half are left. If one draw decided on both, none would be.
+TEST_F(BeamMedia, DropoutDoesNotDependOnWhatABeamMeets) {
+  KnownScene known(exec_, geometry_, wall);
+  known.set(SceneLayer::airborne_sand, [](int, int) { return 1.0f; });
+  media_.dust_extinction = 1;
+  media_.dust_returns = 0.25f;
+  LidarParameters p = bundle();
+  p.dropout = 0.5f;
+  Lidar lidar(exec_, p, media_);
+  EXPECT_NEAR(test::returns_of(lidar.scan(known.scene, {{5, 20, 1}}, 0)), many * 0.125, margin(0.125));
+}
+
 TEST_F(BeamMedia, AirborneSandFillsALayerOverTheGround) {
   KnownScene known(exec_, geometry_, [](int, int) { return 10.0f; });
   known.set(SceneLayer::airborne_sand, [](int, int) { return 0.1f; });
