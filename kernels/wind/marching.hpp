@@ -30,6 +30,8 @@ struct Line {
     const float slope = static_cast<float>(drift) * (1.0f / 65536.0f);
     return sqrtf(1.0f + slope * slope);
   }
+  /// Whether the line is more than 3.6 degrees off an axis. If not, a step is one cell long within 0.2 %.
+  DESERT_HD bool is_oblique() const { return drift > 65536 / 16 || drift < -65536 / 16; }
   /// Offset of the cell at or before the sample of step j from the first cell of the march.
   DESERT_HD int dx(int j) const { return along_x() ? j * step() : (j * drift) >> 16; }
   DESERT_HD int dy(int j) const { return along_x() ? (j * drift) >> 16 : j * step(); }

@@ -6,10 +6,12 @@
 ///
 /// Samples are those of a march upwind up to `distance`. The cells of a block of 4 × 4 march in one
 /// direction, that of the wind in the block's middle: the wind turns over many blocks, and adjacent cells
-/// then share their samples. A step goes to the next column of cells, or to the next row where the line
-/// crosses rows faster, and interpolates linearly between two cells there. With `curved` each cell marches
-/// against its own wind, one cell width per step with bilinear samples, and reads the wind again at every
-/// step. Marches wrap around periodic edges; beyond an open edge the height of the edge continues.
+/// then share their samples. The first sample lies at one cell's distance in every direction, on the
+/// quadratic surface through the nine cells around (RiseOverOneCell). Then a step goes to the next column of
+/// cells, or to the next row where the line crosses rows faster, and interpolates linearly between two cells
+/// there. With `curved` each cell marches against its own wind, one cell width per step with bilinear samples
+/// after the first, and reads the wind again at every step. Marches wrap around periodic edges; beyond an
+/// open edge the height of the edge continues.
 ///
 /// Steps shorter than 1 s share the shadow of the second's first one. Dunes depend on this delay as on a
 /// constant of nature: what the wind lifts in a second makes cells that shelter those behind them, from which

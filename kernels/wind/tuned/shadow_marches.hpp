@@ -47,7 +47,8 @@ struct ShortShadow {
     const MarchDirection c = shadow.march_directions[y / side * shadow.blocks.width + x / side];
     const int end = shadow.steps_of(c);
     const Shadow::CellGroup<MarchAxis::either, 1> cell(shadow, c.line(), x, y);
-    float steepest[1] = {0.0f};
+    float steepest[1];
+    shadow.rise_over_one_cell<true>(cell, steepest);
     unrolled<longest>([&](auto n) DESERT_INLINE {
       float found[1] = {steepest[0]};
       shadow.sample_step<true>(cell, n + 1, found);

@@ -135,7 +135,6 @@ TEST_P(Barchans, OfOneSeed) {
   EXPECT_LE(s.slip_face_deg, 35);
   EXPECT_LE(s.slip_direction_deg, 60);
   EXPECT_LE(s.horn_direction_deg, 30);
-  EXPECT_GT(s.horns_downwind, 0);
   if (!file.empty()) write_barchans(file, dunes);
 }
 
