@@ -106,7 +106,7 @@ struct Traversability {
   TraversabilityParameters limits;
   const Quanta *sand, *soil, *water;
   repose::RelativeMoisture moisture;
-  const float *vegetation, *obstacle;
+  const float *water_velocity_x, *water_velocity_y, *vegetation, *obstacle;
   float* traversability;
 
   /// Half-saturated ground is firmest; wetter ground turns to mud, the more the deeper it is.
@@ -115,6 +115,14 @@ struct Traversability {
         static_cast<float>(value_or_zero(sand, i) + value_or_zero(soil, i)) * roughness.surface.quantum;
     const float excess = maximum(moisture(i) - 0.5f, 0.0f) / (limits.mud - 0.5f);
     return excess * minimum(depth / limits.sand_depth, 1.0f);
+  }
+
+  /// What water takes off, by its depth, and by its depth × speed.
+  DESERT_HD float flood(int i) const {
+    const float depth = value_or_zero(water, i) * roughness.surface.quantum;
+    if (!(depth > 0.0f) || !water_velocity_x) return depth / limits.water_depth;
+    const float speed = hypotenuse(water_velocity_x[i], water_velocity_y[i]);
+    return maximum(depth / limits.water_depth, depth * speed / limits.water_flow);
   }
 
   /// What the slope takes off; where looseness is not known, deep sand as well.
@@ -138,7 +146,7 @@ struct Traversability {
     const int i = surface.grid.index(x, y);
     if (value_or_zero(obstacle, i) > 0.0f) return 0.0f;
     float worst = steepness(x, y);
-    worst = maximum(worst, value_or_zero(water, i) * surface.quantum / limits.water_depth);
+    worst = maximum(worst, flood(i));
     worst = maximum(worst, mud(i));
     worst = maximum(worst, value_or_zero(vegetation, i) / limits.vegetation);
     if (worst < 1.0f && !roughness.level_at(x, y)) {  // level ground has neither steps nor roughness
@@ -169,6 +177,8 @@ inline Traversability make_law(const TerrainView& t, const Rover& rover) {
           t.quanta(Layer::soil),
           t.quanta(Layer::water),
           repose::RelativeMoisture(t, rover.repose),
+          t.real(Layer::water_velocity_x),
+          t.real(Layer::water_velocity_y),
           t.real(Layer::vegetation),
           t.real(Layer::obstacle),
           t.real(Layer::traversability)};

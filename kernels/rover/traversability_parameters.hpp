@@ -18,6 +18,7 @@ struct TraversabilityParameters {
   float step_height = 0.3f;
   float roughness = 0.15f;
   float water_depth = 0.3f;
+  float water_flow = 0.2f;
   float mud = 0.9f;
   float vegetation = 0.8f;
   float window = 0.5f;
@@ -47,7 +48,9 @@ constexpr auto parameter_table(const TraversabilityParameters*) {
                 "`sinkage` decide instead."),
       parameter("step_height", &P::step_height, 1e-3, 1000, "m", "Step that stops the rover."),
       parameter("roughness", &P::roughness, 1e-3, 1000, "m", "Roughness that stops the rover."),
-      parameter("water_depth", &P::water_depth, 1e-3, 1000, "m", "Water that stops the rover."),
+      parameter("water_depth", &P::water_depth, 1e-3, 1000, "m", "Depth of water that stops the rover."),
+      parameter("water_flow", &P::water_flow, 1e-3, 1000, "m^2/s",
+                "Depth x speed of water that sweeps the rover away; 0.3 for small cars."),
       parameter("mud", &P::mud, 0.501, 1000, "1",
                 "Relative moisture of deep sand or soil that stops the rover; half-wet ground is firm, above "
                 "1 none does."),

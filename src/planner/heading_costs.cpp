@@ -14,7 +14,8 @@ HeadingCosts::HeadingCosts(std::shared_ptr<const CostGrid> grid, HeadingLayers l
   const GridFrame& f = grid_->frame();
   const std::size_t cells = static_cast<std::size_t>(f.width) * static_cast<std::size_t>(f.height);
   for (const auto* layer : {&layers_.elevation, &layers_.slip, &layers_.slip_downhill, &layers_.slip_across,
-                            &layers_.sinkage, &layers_.water_depth, &layers_.wind_x, &layers_.wind_y})
+                            &layers_.sinkage, &layers_.water_depth, &layers_.water_velocity_x,
+                            &layers_.water_velocity_y, &layers_.wind_x, &layers_.wind_y})
     if (!layer->empty() && layer->size() != cells)
       throw ConfigError("a layer of heading costs has another size than the grid");
 }
@@ -36,11 +37,12 @@ std::optional<double> HeadingCosts::metre(const GridPoint& at, double east, doub
   const double up = value(layers_.slip, i), down = value(layers_.slip_downhill, i);
   const double slip = (up + down) / 2 + uphill * std::abs(uphill) * (up - down) / 2;
   const double headwind = -(value(layers_.wind_x, i) * east + value(layers_.wind_y, i) * north);
+  const double depth = std::max(value(layers_.water_depth, i), 0.0),
+               speed = std::hypot(value(layers_.water_velocity_x, i), value(layers_.water_velocity_y, i));
   return 1 + weights_.slip * std::max(slip, 0.0) +
          weights_.drift * (1 - uphill * uphill) * std::abs(value(layers_.slip_across, i)) +
          weights_.sinkage * std::max(value(layers_.sinkage, i), 0.0) +
-         weights_.water * std::max(value(layers_.water_depth, i), 0.0) +
-         weights_.wind * std::max(headwind, 0.0);
+         depth * (weights_.water + weights_.flow * speed) + weights_.wind * std::max(headwind, 0.0);
 }
 
 std::optional<double> HeadingCosts::line(const GridPoint& from, const GridPoint& to) const {

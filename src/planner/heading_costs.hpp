@@ -2,15 +2,16 @@
 /// What a straight way costs by what a rover feels on it: slope, slip and sinkage as it heads, water and
 /// wind.
 ///
-///   a metre costs 1 + w_slip max(s, 0) + w_cross tan β + w_sinkage z + w_water d + w_wind max(−u·e, 0)
+///   a metre costs 1 + w_slip max(s, 0) + w_cross tan β + w_sinkage z + w_water d + w_flow d |v|
+///                   + w_wind max(−u·e, 0)
 ///
 /// with the slip s and the drift tan β for the heading e, from the layers slip (up the steepest line),
 /// slip_downhill and slip_across, and f the cosine of the angle between the heading and uphill:
 ///
 ///   s(f) = (s_up + s_down)/2 + f |f| (s_up − s_down)/2,   tan β = (1 − f²) slip_across
 ///
-/// which is exact for the law `light` of wheel_ground.hpp. z is the sinkage [m], d the depth of water [m], u
-/// the wind [m/s]. What CostGrid calls lethal has no cost.
+/// which is exact for the law `light` of wheel_ground.hpp. z is the sinkage [m], d the depth of water [m], v
+/// its velocity, u the wind [m/s]. What CostGrid calls lethal has no cost.
 
 #include <memory>
 #include <optional>
@@ -25,12 +26,14 @@ struct HeadingWeights {
   double drift = 4;     ///< [1]
   double sinkage = 20;  ///< [1/m]
   double water = 10;    ///< [1/m]
+  double flow = 15;     ///< [s/m²]
   double wind = 0.02;   ///< of headwind [s/m]
 };
 
 /// Layers, row by row from the south-west; empty ones count as 0.
 struct HeadingLayers {
-  std::vector<float> elevation, slip, slip_downhill, slip_across, sinkage, water_depth, wind_x, wind_y;
+  std::vector<float> elevation, slip, slip_downhill, slip_across, sinkage, water_depth, water_velocity_x,
+      water_velocity_y, wind_x, wind_y;
 };
 
 class HeadingCosts {

@@ -60,6 +60,7 @@ struct PlannerParameters {
   double drift_weight = 4;
   double sinkage_weight = 20;
   double water_weight = 10;
+  double flow_weight = 15;
   double wind_weight = 0.02;
 
   CostParameters costs() const { return {buckets, cost_weight, lethal_below, radius}; }
@@ -68,7 +69,7 @@ struct PlannerParameters {
   }
   OmplParameters ompl() const { return {ompl_evaluations, ompl_time, static_cast<std::uint32_t>(ompl_seed)}; }
   HeadingWeights heading_weights() const {
-    return {slip_weight, drift_weight, sinkage_weight, water_weight, wind_weight};
+    return {slip_weight, drift_weight, sinkage_weight, water_weight, flow_weight, wind_weight};
   }
 };
 
@@ -139,6 +140,7 @@ constexpr auto parameter_table(const PlannerParameters*) {
       parameter("drift_weight", &P::drift_weight, 0, 1000, "1", "ompl: by its drift downhill."),
       parameter("sinkage_weight", &P::sinkage_weight, 0, 1e5, "1/m", "ompl: by its sinkage."),
       parameter("water_weight", &P::water_weight, 0, 1e5, "1/m", "ompl: by its depth of water."),
+      parameter("flow_weight", &P::flow_weight, 0, 1e5, "s/m^2", "ompl: by depth x speed of its water."),
       parameter("wind_weight", &P::wind_weight, 0, 100, "s/m", "ompl: by its headwind."));
 }
 static_assert(table_is_complete<PlannerParameters>());

@@ -126,6 +126,11 @@ Hindrance Contact::at_wheel(const Eigen::Vector3d& h, const Direction& way,
     return {RoverCondition::blocked, water,
             text_of("water is ", p.water, " m deep at ", point_text(x, y), " (at most ", rover_.max_water,
                     " m)")};
+  const double flow = p.flow() - rover_.max_flow;
+  if (flow > 0)
+    return {RoverCondition::blocked, flow,
+            text_of("water of ", p.water, " m flows with ", p.flow() / p.water, " m/s at ", point_text(x, y),
+                    ", ", p.flow(), " m^2/s (at most ", rover_.max_flow, " m^2/s)")};
   return {};
 }
 

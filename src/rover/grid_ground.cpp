@@ -24,10 +24,16 @@ std::vector<float> looseness_of(const Snapshot& snapshot) {
 }
 
 GridGround::Layers layers_of(const Snapshot& s, double moisture_capacity) {
-  return {layer_of(s, Layer::elevation), layer_of(s, Layer::sand),
-          layer_of(s, Layer::soil),      looseness_of(s),
-          layer_of(s, Layer::moisture),  layer_of(s, Layer::obstacle),
-          layer_of(s, Layer::water),     moisture_capacity};
+  return {layer_of(s, Layer::elevation),
+          layer_of(s, Layer::sand),
+          layer_of(s, Layer::soil),
+          looseness_of(s),
+          layer_of(s, Layer::moisture),
+          layer_of(s, Layer::obstacle),
+          layer_of(s, Layer::water),
+          layer_of(s, Layer::water_velocity_x),
+          layer_of(s, Layer::water_velocity_y),
+          moisture_capacity};
 }
 
 }  // namespace
@@ -46,6 +52,8 @@ GridGround::GridGround(const Geometry& geometry, Layers layers) : g_(geometry), 
   check(layers_.moisture, "moisture", true);
   check(layers_.obstacle, "obstacle", true);
   check(layers_.water, "water", true);
+  check(layers_.water_x, "water_x", true);
+  check(layers_.water_y, "water_y", true);
 }
 
 GridGround::GridGround(const Snapshot& s, double moisture_capacity)
@@ -59,8 +67,9 @@ std::unique_ptr<GridGround> GridGround::with_micro_relief(const Snapshot& s, dou
 }
 
 std::vector<Layer> GridGround::layers_of_snapshot(bool micro_relief) {
-  std::vector<Layer> layers{Layer::elevation, Layer::sand,     Layer::soil, Layer::looseness,
-                            Layer::moisture,  Layer::obstacle, Layer::water};
+  std::vector<Layer> layers{Layer::elevation,       Layer::sand,     Layer::soil,  Layer::looseness,
+                            Layer::moisture,        Layer::obstacle, Layer::water, Layer::water_velocity_x,
+                            Layer::water_velocity_y};
   if (micro_relief) layers.insert(layers.end(), MicroRelief::layers().begin(), MicroRelief::layers().end());
   return layers;
 }
@@ -116,6 +125,10 @@ GroundPoint GridGround::at(double x, double y) const {
                                      layers_.moisture_capacity);
   point.obstacle = cell_value(layers_.obstacle, x, y);
   point.water = known(layers_.water);
+  if (point.water > 0) {
+    point.water_x = known(layers_.water_x);
+    point.water_y = known(layers_.water_y);
+  }
   return point;
 }
 

@@ -20,7 +20,8 @@ class GridGround : public GroundSource {
   /// Values of cells, row-major, x fastest, row 0 in the south. Arrays that are empty stand for 0
   /// (looseness: not known); NaN in `elevation` is unknown ground.
   struct Layers {
-    std::vector<float> elevation, sand_depth, soil_depth, looseness, moisture, obstacle, water;
+    std::vector<float> elevation, sand_depth, soil_depth, looseness, moisture, obstacle, water, water_x,
+        water_y;
     double moisture_capacity = 0.3;  ///< of a metre of ground [m]
   };
 

@@ -1,6 +1,7 @@
 #pragma once
 /// The ground that a rover stands on, wherever it comes from.
 
+#include <cmath>
 #include <limits>
 #include <optional>
 
@@ -13,6 +14,10 @@ struct GroundPoint {
   double moisture = 0;              ///< relative, 0 … 1
   double obstacle = 0;              ///< above 0 a solid object stands there
   double water = 0;                 ///< depth of water [m]
+  double water_x = 0, water_y = 0;  ///< velocity of the water [m/s]
+
+  /// Depth × speed of the water [m²/s].
+  double flow() const { return water * std::hypot(water_x, water_y); }
 };
 
 /// Coordinates are those of the terrain's frame [m].

@@ -166,14 +166,17 @@ void Rover::follow_ground(const GroundSource& ground) {
   }
 }
 
-/// Sand on the contacts beyond what wheels dig themselves in at full slip, mean of the wheels [m].
-double Rover::depth_beyond_digging(const GroundSource& ground) const {
-  double sum = 0;
+Rover::OnWheels Rover::on_wheels(const GroundSource& ground) const {
+  OnWheels mean;
+  const double share = 1.0 / suspension_.wheels();
   for (int n = 0; n < suspension_.wheels(); ++n) {
     const GroundPoint p = contact_.point(suspension_.hub(n, state_), ground);
-    sum += std::max(wheel(n).sunk - static_cast<double>(law_.sinkage(1, 1, wheel_ground(p))), 0.0);
+    mean.sand +=
+        share * std::max(wheel(n).sunk - static_cast<double>(law_.sinkage(1, 1, wheel_ground(p))), 0.0);
+    mean.water += share * p.water;
+    mean.flow += share * p.flow();
   }
-  return sum / suspension_.wheels();
+  return mean;
 }
 
 /// Sets what the rover cannot drive out of; false if there is something. A rover that was buried is free once
@@ -197,12 +200,17 @@ bool Rover::update_condition(const GroundSource& ground) {
          << ")";
     return stopped(RoverCondition::tipped, text.str());
   }
-  const double depth = depth_beyond_digging(ground);
+  const OnWheels on = on_wheels(ground);
   const double limit = rover_.buried_depth * (state_.condition == RoverCondition::buried ? 0.5 : 1);
-  if (depth <= limit) return true;
-  text << "it is buried: " << depth << " m of sand came on its wheels (at most " << rover_.buried_depth
-       << ")";
-  return stopped(RoverCondition::buried, text.str());
+  if (on.sand > limit) {
+    text << "it is buried: " << on.sand << " m of sand came on its wheels (at most " << rover_.buried_depth
+         << ")";
+    return stopped(RoverCondition::buried, text.str());
+  }
+  if (on.flow <= rover_.max_flow) return true;
+  text << "it has no hold in water that is " << on.water << " m deep and flows with " << on.flow / on.water
+       << " m/s: " << on.flow << " m^2/s (at most " << rover_.max_flow << " m^2/s)";
+  return stopped(RoverCondition::blocked, text.str());
 }
 
 void Rover::go(const GroundSource& ground) {

@@ -73,7 +73,12 @@ class Rover {
   void follow_ground(const GroundSource& ground);
   bool update_condition(const GroundSource& ground);
   void go(const GroundSource& ground);
-  double depth_beyond_digging(const GroundSource& ground) const;
+  /// Means of the wheels: sand on the contacts beyond what they dig themselves in at full slip, and depth of
+  /// the water around them [m]; depth × speed of it [m²/s].
+  struct OnWheels {
+    double sand = 0, water = 0, flow = 0;
+  };
+  OnWheels on_wheels(const GroundSource& ground) const;
   double slip_on(const WheelMotion& motion, const GroundUnderWheels& under, const GroundSource& ground) const;
   DriveCommand body_motion(const WheelMotion& motion, const GroundUnderWheels& under, double slip) const;
   void turn_wheels(const WheelMotion& motion, const DriveCommand& body, const GroundSource& ground);

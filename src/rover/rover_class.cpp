@@ -84,6 +84,7 @@ RoverParameters rover_of_class(const YAML::Node& file, const std::string& source
   r.wheel_width = t.wheel_width;
   r.max_step = t.step_height;
   r.max_water = t.water_depth;
+  r.max_flow = t.water_flow;
   r.mass_height = r.clearance + r.body_height / 4;
   r.max_wheel_speed = 2 * r.max_speed;
   r.max_acceleration = 2 * r.max_speed;

@@ -53,6 +53,7 @@ struct RoverParameters {
   double skid_loss = 0.2;
   double max_step = 0.1;
   double max_water = 0.1;
+  double max_flow = 0.1;
   double tip_roll_deg = 40;
   double tip_pitch_deg = 40;
   double stuck_slip = 0.9;
@@ -110,6 +111,7 @@ constexpr auto parameter_table(const RoverParameters*) {
       parameter("max_step", &P::max_step, 0.001, 10, "m",
                 "Rise of the ground over one wheel radius that stops it."),
       parameter("max_water", &P::max_water, 0, 100, "m", "Depth of water that stops it."),
+      parameter("max_flow", &P::max_flow, 0, 1000, "m^2/s", "Depth x speed of water that stops it."),
       parameter("tip_roll_deg", &P::tip_roll_deg, 1, 89, "deg", "Roll at which it tips over."),
       parameter("tip_pitch_deg", &P::tip_pitch_deg, 1, 89, "deg", "Pitch at which it tips over."),
       parameter("stuck_slip", &P::stuck_slip, 0.1, 1, "1", "Slip from which on it makes no way."),

@@ -54,7 +54,7 @@ bool is_free_ground(const RoverParameters& p, double x, double y, double room, c
       if (!east || !west || !north || !south) return false;
       if (std::hypot(*east - *west, *north - *south) > steepest * 2 * half) return false;
       const GroundPoint point = ground.at(px, py);
-      if (point.obstacle > 0 || point.water > p.max_water) return false;
+      if (point.obstacle > 0 || point.water > p.max_water || point.flow() > p.max_flow) return false;
     }
   }
   return true;

@@ -11,8 +11,8 @@ PlannerTerrain::PlannerTerrain(const PlannerSetup& setup) {
   options.node = setup.node.terrain_node;
   options.layers = {"elevation", "traversability"};
   if (setup.planner.planner == PlannerKind::ompl)
-    for (const char* name :
-         {"slip", "slip_downhill", "slip_across", "sinkage", "water_depth", "wind_x", "wind_y"})
+    for (const char* name : {"slip", "slip_downhill", "slip_across", "sinkage", "water_depth",
+                             "water_velocity_x", "water_velocity_y", "wind_x", "wind_y"})
       options.layers.emplace_back(name);
   options.tell_each_step = setup.node.clock == RoverClock::lockstep;
   options.on_change = [this](const MapChange& change) { receive(change); };
@@ -59,8 +59,9 @@ HeadingLayers PlannerTerrain::layers(const GridFrame& frame) const {
     const std::shared_ptr<const LayerMap> map = client_->layer_map(name);
     return map && grid_frame_of(map->info()) == frame ? map->values() : std::vector<float>();
   };
-  return {values("elevation"), values("slip"),        values("slip_downhill"), values("slip_across"),
-          values("sinkage"),   values("water_depth"), values("wind_x"),        values("wind_y")};
+  return {values("elevation"), values("slip"),        values("slip_downhill"),    values("slip_across"),
+          values("sinkage"),   values("water_depth"), values("water_velocity_x"), values("water_velocity_y"),
+          values("wind_x"),    values("wind_y")};
 }
 
 }  // namespace desert_sim

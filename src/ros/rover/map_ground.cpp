@@ -92,6 +92,10 @@ GroundPoint MapGround::at(double x, double y) const {
   if (const std::shared_ptr<const LayerMap>& map = maps_.maps[TerrainMaps::obstacle])
     point.obstacle = map->cell_value(x, y).value_or(0);
   point.water = value(TerrainMaps::water_depth, x, y);
+  if (point.water > 0) {
+    point.water_x = value(TerrainMaps::water_velocity_x, x, y);
+    point.water_y = value(TerrainMaps::water_velocity_y, x, y);
+  }
   return point;
 }
 

@@ -10,6 +10,7 @@
 #include "kernels/water/shallow_water.hpp"
 #include "kernels/water/virtual_pipes.hpp"
 #include "kernels/water/water_sources.hpp"
+#include "kernels/water/water_velocity.hpp"
 #include "src/scenario/section_with_list.hpp"
 #include "src/simulation/processes/limits.hpp"
 #include "src/simulation/processes/processes.hpp"
@@ -102,6 +103,10 @@ void move_with_momentum(StepContext& c, ProcessWorkspace* workspace) {
   });
 }
 
+void find_velocities(StepContext& c, ProcessWorkspace*) {
+  with_backend(c.exec(), [&](auto& e) { water_velocity::step(e, c.terrain); });
+}
+
 /// Whether water is simulated, and this is its model.
 template <WaterModel model>
 bool has_water_model(const Scenario& s) {
@@ -118,6 +123,7 @@ Process water_model(const char* name) {
   p.writes = {Layer::water, Layer::water_flux_x, Layer::water_flux_y, Layer::water_velocity_x,
               Layer::water_velocity_y};
   p.writes_if_in_use = {Layer::suspended_sediment};
+  p.refresh = find_velocities;
   p.highest = highest_water;
   p.can_be_recorded = cannot_be_recorded;
   return p;

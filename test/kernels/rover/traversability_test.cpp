@@ -157,6 +157,17 @@ TEST_P(TraversabilityLaw, EachCriterionAlone) {
   EXPECT_NEAR(worth_with(put(Layer::sand, 0.15)), 0.9, 1e-5);
   EXPECT_NEAR(worth_with(put(Layer::water, 0.15)), 0.5, 1e-5);
   EXPECT_EQ(worth_with(put(Layer::water, 0.31)), 0);
+  const auto stream = [](double depth, double east, double north) {
+    return [=](BenchTerrain& t) {
+      t.terrain.allocate(Layer::water_velocity_x);
+      t.terrain.allocate(Layer::water_velocity_y);
+      t.set(Layer::water, depth).set(Layer::water_velocity_x, east).set(Layer::water_velocity_y, north);
+    };
+  };
+  EXPECT_NEAR(worth_with(stream(0.1, 0.6, -0.8)), 0.5, 1e-5);  // 0.1 of 0.2 m²/s
+  EXPECT_NEAR(worth_with(stream(0.15, 0.1, 0)), 0.5, 1e-5) << "its depth is worse than its speed";
+  EXPECT_EQ(worth_with(stream(0.1, -1.3, 1.6)), 0);
+  EXPECT_EQ(worth_with(stream(0, 5, 5)), 1) << "where there is no water, nothing flows";
   const auto wet = [](double moisture) {
     return [=](BenchTerrain& t) { t.set(Layer::sand, 5).set(Layer::moisture, moisture); };
   };

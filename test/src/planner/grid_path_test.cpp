@@ -110,6 +110,10 @@ TEST(HeadingCosts, WindAndWaterCost) {
   const HeadingCosts costs(grid, layers, {});
   EXPECT_NEAR(*costs.metre({10, 10}, -1, 0), 1 + 0.02 * 5 + 10 * 0.02 + 20 * 0.01, 1e-6);
   EXPECT_NEAR(*costs.metre({10, 10}, 1, 0), 1 + 10 * 0.02 + 20 * 0.01, 1e-6);
+  layers.water_velocity_x.assign(3600, 0.6F);
+  layers.water_velocity_y.assign(3600, -0.8F);
+  const HeadingCosts flood(grid, layers, {});
+  EXPECT_NEAR(*flood.metre({10, 10}, 1, 0), 1 + (10 + 15) * 0.02 + 20 * 0.01, 1e-6);
 }
 
 TEST(OmplPlanner, FindsAWayRoundAWallThatCostsLessThanTheKnownOne) {

@@ -161,6 +161,61 @@ TEST(RoverTrouble, ObstaclesAndDeepWaterBlockIt) {
   }
 }
 
+/// Water of 5 cm, which it wades through at 1 m/s, and which sweeps it away at 3 m/s.
+TEST(RoverTrouble, FastWaterBlocksItThatItWouldWadeThrough) {
+  for (const float speed : {1.0F, 3.0F}) {
+    GridGround::Layers ford = layers_of(flat());
+    ford.water.assign(ford.elevation.size(), 0);
+    for (std::size_t n = 0; n < ford.water.size(); ++n)
+      if (n % 400 >= 210 && n % 400 < 240) ford.water[n] = 0.05F;
+    ford.water_y.assign(ford.elevation.size(), -0.8F * speed);
+    ford.water_x.assign(ford.elevation.size(), 0.6F * speed);
+    const GridGround ground(geometry(), ford);
+    Rover r = rover_of();
+    r.place(-1, 0, 0, ground);
+    const bool blocked = drive_until(
+        r, {0.3, 0, 0}, ground,
+        [&] { return r.state().condition == RoverCondition::blocked || r.state().pose.x > 5; }, 60);
+    ASSERT_TRUE(blocked);
+    EXPECT_EQ(r.state().condition == RoverCondition::blocked, speed > 2) << speed << " m/s";
+    if (speed < 2) continue;
+    EXPECT_NE(r.state().reason.find("flows with 3 m/s"), std::string::npos) << r.state().reason;
+    EXPECT_NE(r.state().reason.find(" m^2/s (at most 0.1 m^2/s)"), std::string::npos) << r.state().reason;
+    EXPECT_LT(r.state().pose.x + 0.3, 1);
+  }
+}
+
+TEST(RoverTrouble, AFloodThatComesHoldsItUntilItIsGone) {
+  const auto flood = [](float depth, float speed) {
+    GridGround::Layers layers = layers_of(flat());
+    layers.water.assign(layers.elevation.size(), depth);
+    layers.water_x.assign(layers.elevation.size(), speed);
+    return GridGround(geometry(), layers);
+  };
+  const GridGround dry = flood(0, 2), shallow = flood(0.04F, 2), deep = flood(0.5F, 1),
+                   still = flood(0.08F, 0);
+  Rover r = rover_of();
+  r.place(0, 0, 0, dry);
+  drive_until(
+      r, {0.3, 0, 0}, shallow, [] { return false; }, 5);
+  EXPECT_EQ(r.state().condition, RoverCondition::driving) << r.state().reason;
+  const double x = r.state().pose.x;
+  EXPECT_GT(x, 1);
+  r.advance(0.1, &deep);
+  EXPECT_EQ(r.state().condition, RoverCondition::blocked) << "it has not been told to drive";
+  EXPECT_NE(r.state().reason.find("0.5 m deep and flows with 1 m/s: 0.5 m^2/s (at most 0.1"),
+            std::string::npos)
+      << r.state().reason;
+  for (const double speed : {0.3, -0.3})
+    drive_until(
+        r, {speed, 0, 0}, deep, [] { return false; }, 3);
+  EXPECT_NEAR(r.state().pose.x, x, 1e-6) << "neither way leads out";
+  r.advance(0.1, &still);
+  EXPECT_EQ(r.state().condition, RoverCondition::driving) << r.state().reason;
+  EXPECT_TRUE(drive_until(
+      r, {0.3, 0, 0}, shallow, [&] { return r.state().pose.x > x + 1; }, 10));
+}
+
 TEST(RoverTrouble, TheEdgeOfTheTerrainStopsIt) {
   const GridGround ground = ground_of(flat());
   Rover r = rover_of();

@@ -248,6 +248,37 @@ TEST_P(Checkpoint, SnapshotsAfterLoadingShowWindAndElevation) {
   EXPECT_NEAR((*after->find(Layer::wind_x))[7], 5, 0.1);
 }
 
+/// Only fluxes are part of the state; velocities follow from them and the depth, within 15 % here.
+TEST_P(Checkpoint, SnapshotsAfterLoadingShowTheWatersVelocity) {
+  for (const char* model : {"pipes", "shallow_water"}) {
+    SCOPED_TRACE(model);
+    auto s = simulation(
+        "grid: {width: 24, height: 9, cell_size: 2, boundary: open}\n"
+        "terrain: [ramp: {layer: bedrock, value: 1, slope_x: -0.01}]\n"
+        "water: {model: " +
+        std::string(model) +
+        ", drag: 0.02, evaporation: 0, springs: [{x: 9, y: 9, radius: 6, discharge: 8}]}\n"
+        "run: {time_step: 0.5}\n");
+    test::run(*s, 100);
+    save_checkpoint(folder_.path("a.ck"), *s);
+    const auto loaded = load_checkpoint(folder_.path("a.ck"), exec());
+    const std::vector<Layer> layers{Layer::water_velocity_x, Layer::water_velocity_y};
+    const auto a = s->views().snapshot(layers), b = loaded->views().snapshot(layers);
+    for (const Layer layer : {Layer::water_velocity_x, Layer::water_velocity_y}) {
+      double off = 0, all = 0;
+      for (int y = 1; y < 8; ++y)
+        for (int x = 1; x < 23; ++x) {
+          const auto i = static_cast<std::size_t>(24 * y + x);
+          const double kept = a->layers.at(layer)[i], found = b->layers.at(layer)[i];
+          off += (kept - found) * (kept - found);
+          all += kept * kept;
+        }
+      EXPECT_GT(std::sqrt(all / 154), 0.1) << info(layer).name;
+      EXPECT_LT(off, 0.25 * 0.25 * all) << info(layer).name;
+    }
+  }
+}
+
 /// The angles of repose follow from the layers (but for what the wind takes off them, which the next step
 /// knows): a loaded world is not all avalanches.
 TEST_P(Checkpoint, ReportsAResidualLikeTheOneBefore) {
