@@ -67,6 +67,15 @@ class LaunchFiles(unittest.TestCase):
         self.assertEqual((p["/desert_sim/scenario"], p["/desert_sim/run/acceleration"]), ("wadi", 1))
         self.assertNotIn("/desert_sim/grid/from_raster", parameters(config_of("bringup.launch")))
 
+    def test_rovers_start_where_headers_of_scenarios_say(self):
+        def start(*arguments):
+            p = parameters(config_of("bringup.launch", *arguments))
+            return tuple(p.get("/rover/desert_rover/" + key) for key in ("x", "y"))
+        self.assertEqual(start(), (12, 64))
+        self.assertEqual(start("scenario:=flash_flood"), (236, 51))
+        self.assertEqual(start("scenario:=flash_flood", "x:=20"), (20, None))
+        self.assertEqual(start("scenario:=wadi"), (None, None))
+
     def test_the_demo_is_slow_unless_one_says_how_fast(self):
         def pace(*arguments):
             p = parameters(config_of("demo.launch", *arguments))

@@ -32,8 +32,8 @@ double wet_share(const Field& water) {
 
 class Bores : public testing::TestWithParam<int> {};
 
-/// Fronts on dry ground run about as fast as waves on the water behind them, √(g h): 0.88 to 1.47 times, and are
-/// 1.5 to 6 s long, with both seeds.
+/// Fronts on dry ground run about as fast as waves on the water behind them, √(g h): 0.88 to 1.47 times, and
+/// are 1.5 to 6 s long, with both seeds.
 TEST_P(Bores, RunDownDryChannels) {
   Running scene(shipped("flash_flood", {"seed=" + std::to_string(GetParam())}));
   scene.run(238);
