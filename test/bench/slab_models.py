@@ -29,7 +29,7 @@ ROWS = {
     "werner_barchan, 200 s": (["run.duration=200"], None, 8.9),
     "werner_barchan, 200 s, each cell once": (["run.duration=200", "slab_model.polling=non_repeated"], None, 12.1),
     "nield_nebkha": ([], 58, None),
-    "nield_parabolic": ([], 85, None),
+    "nield_nebkha, 1500 s": (["run.duration=1500"], 85, None),
     "nield_blowouts": ([], 76, None),
     "nield_islands": ([], 57, None),
 }
