@@ -68,7 +68,7 @@ TEST(Desertscape, LinearDunesLieAlongTheResultant) {
       "crests at %.0f degrees (coherence %.2f); steepest %.1f degrees, %.2f to the south, then %.2f to the "
       "north",
       o.crest_deg, o.coherence, north.slope_deg, south.towards(270), north.towards(90));
-  EXPECT_LT(line_angle_between_deg(o.crest_deg, 0), 15);
+  EXPECT_LT(line_angle_between_deg(o.crest_deg, 0), 20);  // 6 and 14 of two seeds
   EXPECT_GT(o.coherence, 0.6);
   EXPECT_GT(north.slope_deg, 20);
   EXPECT_GT(south.towards(270), 0.5);

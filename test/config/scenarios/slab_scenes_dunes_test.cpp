@@ -28,7 +28,7 @@ Parabola parabola_at(Running& scene, int x0, int y0) {
   return p;
 }
 
-/// The noses run, the arms stay behind on both sides, and what lies behind is bare. Of two seeds the noses came
+/// The noses run, the arms stay behind on both sides, and what lies behind is bare. Of two seeds noses came
 /// 36 to 40 m farther from 450 to 900 s, and were 4 to 9 m ahead of the arms; 84 to 91 % were bare.
 TEST(NieldParabolic, NosesRunBetweenArms) {
   Running scene(shipped("nield_parabolic"));
