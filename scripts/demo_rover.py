@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""A rover crosses a desert whose dunes march over its way, and climbs one of them.
+"""A rover crosses a desert whose dunes march over its way, and climbs one of them; or, with --scenario flash_flood, is on its
+way along a dry channel when a flood comes down it.
 
 Without --live: desert, rover and planner without a window, in lockstep, faster than time passes. Prints a line every 20 s
 of the rover's time, and in the end what came of it; leaves a picture and a film. Exit status 1, with the reason, if the
@@ -7,6 +8,7 @@ rover did not arrive.
 --live: sets goals to the planner of a desert that runs (launch/demo_rover.launch), round and round.
 """
 import argparse
+import collections
 import math
 import random
 import signal
@@ -21,10 +23,6 @@ from desert_sim.msg import PlannerStatus
 from desert_sim.testing import Desert, Node
 from geometry_msgs.msg import PoseStamped
 
-SCENARIO = "rover_barchans"
-ACCELERATION = 3600  # of its dunes: an hour in a second
-STEP = 0.4  # of the rover's time [s]
-FORECAST_PERIOD = 100  # of the rover's time [s]: the wind is steady, and each forecast is waited for
 FRAMES = 10  # of the film a second, each STEPS_A_FRAME steps
 STEPS_A_FRAME = 5
 FILM_SIZE = (1280, 720)
@@ -32,10 +30,32 @@ ENDS = (PlannerStatus.ARRIVED, PlannerStatus.NO_PATH, PlannerStatus.STUCK, Plann
         PlannerStatus.TIMED_OUT, PlannerStatus.CANCELLED)
 
 
-def course(seed):
-    """Start and first goal [m]: on either side of the barchan in the middle, whose slip face moves over the ground between."""
+# start      (x, y, yaw_deg) [m]
+# goals      functions of the Simulation that give (x, y) [m]; the rover goes to one after another
+# hours      hours of the desert in a second of the rover
+# step       of the rover's time [s]
+# rover, planner   parameters of their nodes
+# legend     of pictures, beside the rover and its ways
+Course = collections.namedtuple("Course", "start goals hours step rover planner legend")
+
+
+def dunes(seed):
+    """To the other side of the barchan in the middle, whose slip face moves over the ground between, and onto its crest."""
     draw = random.Random(seed)
-    return (draw.uniform(100, 108), 42.0), (draw.uniform(100, 108), 90.0)
+    start, goal = (draw.uniform(100, 108), 42.0, 90.0), (draw.uniform(100, 108), 90.0)
+    return Course(start, [lambda _: goal, summit], 1, 0.4, {"rover": {"seed": seed}}, {},
+                  [("too steep or too loose", (60, 60, 190))])
+
+
+def flood(seed):
+    """Up a channel, and onto its bank."""
+    return Course((236.0, 51.0, 180.0), [lambda _: (150.0, 62.0)], 1 / 3600, 0.5,
+                  {"rover_class": "six_wheel_200kg", "rover": {"seed": seed}},
+                  {"speed": 0.2, "forecast_speed": 0.2, "radius": 1.5, "forecast_moments": 20},
+                  [("water", (200, 120, 40)), ("too steep", (60, 60, 190))])
+
+
+COURSES = {"rover_barchans": dunes, "flash_flood": flood}
 
 
 def summit(simulation):
@@ -110,28 +130,35 @@ def forecast_text(status):
 
 
 class Trip:
-    """One rover from start to a goal behind the dune, and onto the dune, step by step."""
+    """One rover from goal to goal, step by step."""
 
-    def __init__(self, options, desert, planner, goal):
-        self.options, self.desert, self.planner, self.goal = options, desert, planner, goal
-        self.time, self.slips, self.length, self.replans, self.last_replan, self.climbs = 0.0, [], 0.0, 0, "", False
+    def __init__(self, options, course, desert, planner):
+        self.options, self.course, self.desert, self.planner = options, course, desert, planner
+        self.time, self.slips, self.length, self.replans, self.last_replan, self.reached = 0.0, [], 0.0, 0, "", 0
         desert.show_path(planner.name + "/path")
-        planner.set_goal("map", *goal)
+        self.set_goal()
 
-    def climb(self):
-        """Sets the second goal."""
-        status = self.planner.status
-        self.replans, self.last_replan, self.climbs = status.replans, status.last_replan, True
-        self.goal = summit(self.desert.simulation)
-        print("      the way past the dune is done; now onto its crest, at (%.1f, %.1f) m" % self.goal, flush=True)
+    def set_goal(self):
+        self.goal = self.course.goals[self.reached](self.desert.simulation)
         self.planner.set_goal("map", *self.goal)
+
+    def next_goal(self):
+        """Whether there is another one."""
+        status = self.planner.status
+        self.reached += 1
+        if self.reached == len(self.course.goals):
+            return False
+        self.replans, self.last_replan = self.replans + status.replans, status.last_replan
+        self.set_goal()
+        print("      it has arrived; the next goal is (%.1f, %.1f) m" % self.goal, flush=True)
+        return True
 
     def step(self):
         before = self.desert.rover.pose()
         reached = self.desert.step().step
         # It may wait for a forecast, which only has the time that nobody else wants.
         self.planner.wait(lambda s: s.terrain_step >= reached, "it does not act on step %d" % reached, 600)
-        self.time += STEP
+        self.time += self.course.step
         now = self.desert.rover.pose()
         self.length += math.hypot(now.x - before.x, now.y - before.y)
         status = self.desert.rover.status()
@@ -153,24 +180,23 @@ class Trip:
     def picture(self):
         """The terrain, what the rover plans and has done, and what that means."""
         from desert_sim.picture import BLUE, GREEN, RED, WHITE  # needs OpenCV, which --live does without
-        legend = (("way driven", WHITE), ("plan", BLUE), ("goal", GREEN), ("rover", RED),
-                  ("too steep or too loose", (60, 60, 190)))
+        legend = (("way driven", WHITE), ("plan", BLUE), ("goal", GREEN), ("rover", RED), *self.course.legend)
         status, slip = self.planner.status, self.slips[-1] if self.slips else 0.0
-        lines = ["%3.0f s, %.0f days of wind: %s, %.0f m made, slip %.0f %%" % (
-            self.time, self.time * ACCELERATION / 86400, status.state, self.length, 100 * slip),
+        hours = self.time * self.course.hours
+        lines = ["%3.0f s%s: %s, %.0f m made, slip %.0f %%" % (
+            self.time, ", %.0f days of wind" % (hours / 24) if hours >= 1 else "", status.state, self.length, 100 * slip),
             "%s; %d replans%s" % (forecast_text(status), *self.changes_of_mind())]
         return self.desert.picture(self.goal).framed(FILM_SIZE, legend, lines)
 
     def run(self, film):
-        steps = int(self.options.seconds / STEP)
-        for n in range(steps):
+        for n in range(int(self.options.seconds / self.course.step)):
             self.step()
             if n % STEPS_A_FRAME == 0:
                 film.add(self.picture())
-            if n % int(20 / STEP) == 0:
+            if n % int(20 / self.course.step) == 0:
                 print(self.line(), flush=True)
-            if self.planner.status.state == PlannerStatus.ARRIVED and not self.climbs:
-                self.climb()
+            if self.planner.status.state == PlannerStatus.ARRIVED and self.next_goal():
+                continue
             if self.planner.status.state in ENDS:
                 break
         film.add(self.picture())
@@ -183,7 +209,7 @@ class Trip:
                   status.state, self.time, self.length, self.desert.rover.pose().z, *self.changes_of_mind(), status.recoveries,
                   100 * sum(self.slips) / max(1, len(self.slips)), 100 * max(self.slips, default=0), rover.state,
                   ": " + rover.reason if rover.reason else ""))
-        if status.state == PlannerStatus.ARRIVED and self.climbs:
+        if self.reached == len(self.course.goals):
             return 0
         print("demo: the rover did not arrive: %s" % (status.reason or "its time is over"), file=sys.stderr)
         return 1
@@ -191,21 +217,21 @@ class Trip:
 
 def run_headless(options):
     from desert_sim.picture import write_image
-    start, goal = course(options.seed)
-    settings = ["run.time_step=%g" % (STEP * ACCELERATION)]
-    parameters = {"backend": options.backend, "threads": 0, "frame_id": "map", "step_rate": 1 / STEP}  # of forecasts
-    with Desert(SCENARIO, rover=(*start, 90.0), settings=settings, seconds_per_step=STEP, parameters=parameters,
-                rover_parameters={"rover": {"seed": options.seed}}) as desert:
+    course = COURSES[options.scenario](options.seed)
+    settings = ["run.time_step=%g" % (course.step * course.hours * 3600)]
+    parameters = {"backend": options.backend, "threads": 0, "frame_id": "map", "step_rate": 1 / course.step}  # of forecasts
+    with Desert(options.scenario, rover=course.start, settings=settings, seconds_per_step=course.step, parameters=parameters,
+                rover_parameters=course.rover) as desert:
         planner = Planner("/rover/desert_planner", "/move_base_simple/goal")
         node = Node(planner.name, {
-            "clock": "lockstep", "seconds_per_sim_second": 1 / ACCELERATION, "planner": options.planner, "tf_prefix": "rover",
-            "terrain_node": "/desert_sim", "rover_node": "desert_rover", "goal_topic": planner.goals.resolved_name,
-            "forecast_period": FORECAST_PERIOD},
+            "clock": "lockstep", "seconds_per_sim_second": 1 / (3600 * course.hours), "planner": options.planner,
+            "tf_prefix": "rover", "terrain_node": "/desert_sim", "rover_node": "desert_rover",
+            "goal_topic": planner.goals.resolved_name, "forecast_period": options.forecast_period, **course.planner},
             executable="desert_planner_node")
         film = Film(options.film)
         try:
             planner.wait(lambda s: s.header.frame_id, "it has no terrain")
-            trip = Trip(options, desert, planner, goal)
+            trip = Trip(options, course, desert, planner)
             trip.run(film)
             status = trip.report()
             write_image(options.picture, trip.picture())
@@ -220,11 +246,12 @@ def run_live(options):
     rospy.init_node("demo_rover", disable_signals=True)
     planner = Planner("rover/desert_planner")
     planner.wait(lambda s: s.header.frame_id, "it has no terrain", 120)
-    start, goal = course(options.seed)
+    course = COURSES[options.scenario](options.seed)
+    goals = [*course.goals, lambda _: course.start[:2]]
     simulation = Simulation()
     n = 0
     while not rospy.is_shutdown():
-        place = (goal, summit(simulation), start)[n % 3]
+        place = goals[n % len(goals)](simulation)
         planner.set_goal(planner.status.header.frame_id, *place)
         planner.wait(lambda s: s.state not in ENDS, "it does not start")
         while planner.status.state not in ENDS and not rospy.is_shutdown():
@@ -240,9 +267,12 @@ def main():
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))  # and not before the nodes have ended
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--live", action="store_true")
+    parser.add_argument("--scenario", choices=COURSES, default="rover_barchans")
     parser.add_argument("--seed", type=int, default=1, help="of the course and the rover's noise")
     parser.add_argument("--seconds", type=float, default=900, help="of the rover's time, at most")
     parser.add_argument("--planner", choices=("field", "ompl", "forecast"), default="field")
+    parser.add_argument("--forecast-period", type=float, default=100,
+                        help="of the rover's time [s]; the weather is known, and each forecast is waited for")
     parser.add_argument("--backend", choices=("auto", "cpu", "cuda"), default="auto")
     parser.add_argument("--picture", default="desert_demo.png")
     parser.add_argument("--film", default="desert_demo.mp4")

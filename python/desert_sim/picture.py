@@ -6,7 +6,8 @@ import numpy
 
 WHITE, BLUE, GREEN, RED = (255, 255, 255), (255, 120, 30), (80, 220, 80), (40, 40, 230)  # blue, green, red
 
-_ROCK = (112.0, 118.0, 124.0)
+_ROCK, _WATER = (112.0, 118.0, 124.0), (200.0, 120.0, 40.0)
+_WET = 0.02  # depth of water that is seen [m]
 _LONG_SIDE = 800  # [pixels], at least
 _LINE_HEIGHT = 26  # [pixels] of the text below a framed picture
 
@@ -40,14 +41,18 @@ class Picture:
     ground   LayerMap of the elevation
     costs    None, or int8 [height, width] as LayerMap.cost(): lethal cells are tinted red
     bare     as of hillshade()
+    water    None, or depth of water [m], float [height, width]; it is blue, lethal or not
     """
 
-    def __init__(self, ground, costs=None, bare=None):
+    def __init__(self, ground, costs=None, bare=None, water=None):
         self._ground = ground
         image = hillshade(ground, bare=bare)
+        depth = numpy.zeros(image.shape[:2]) if water is None else numpy.nan_to_num(water[::-1])
         if costs is not None:
-            lethal = costs[::-1] >= 100
+            lethal = (costs[::-1] >= 100) & (depth < _WET)
             image[lethal] = (0.6 * image[lethal] + 0.4 * numpy.array([40, 40, 220])).astype(numpy.uint8)
+        share = numpy.where(depth < _WET, 0.0, numpy.clip(0.4 + depth, 0.0, 0.9))[..., None]
+        image = (image + share * (numpy.array(_WATER) - image)).astype(numpy.uint8)
         self._scale = max(1, -(-_LONG_SIDE // max(image.shape[:2])))
         self.image = cv2.resize(image, None, fx=self._scale, fy=self._scale, interpolation=cv2.INTER_NEAREST)
 

@@ -49,8 +49,8 @@ class Desert:
     rover             Rover, or None
 
     The ROS master is that of rostest, or of its own (init_ros()). What is expected and does not come raises AssertionError,
-    which names a picture: shaded terrain with lethal cells in red, the rover's way in white, paths in blue, the goal; or
-    says that there is none, because python3-opencv is not installed.
+    which names a picture: shaded terrain with lethal cells in red, water, the rover's way in white, paths in blue, the goal;
+    or says that there is none, because python3-opencv is not installed.
     """
 
     def __init__(self, scenario, seed=None, rover=None, settings=(), seconds_per_step=0.1, parameters=None,
@@ -270,11 +270,12 @@ class Desert:
         west, east, south, north = ground.extent
         try:
             layers = self.simulation.submap(((west + east) / 2, (south + north) / 2), (east - west, north - south),
-                                            ["traversability", "sand_depth"])
+                                            ["traversability", "sand_depth", "water_depth"])
             costs, bare = layers["traversability"].cost(), layers["sand_depth"].values < BARE
+            water = layers["water_depth"].values
         except SimulationError as error:  # a picture of a node that has failed is worth having, too
-            costs, bare, lines = None, None, [*lines, str(error)]
-        picture = Picture(ground, costs, bare)
+            costs, bare, water, lines = None, None, None, [*lines, str(error)]
+        picture = Picture(ground, costs, bare, water)
         for inbox in self._inboxes.values():
             for message in inbox.messages[-1:]:
                 picture.line(points_of(message), BLUE)
