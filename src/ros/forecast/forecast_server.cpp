@@ -16,11 +16,15 @@ namespace {
 
 constexpr auto poll_period = std::chrono::milliseconds(20), feedback_period = std::chrono::milliseconds(100);
 
-/// Calls `work` on a thread of its own, which leaves the processors to all others.
+/// Steps and publishing come before a forecast. With SCHED_IDLE none came to its end on a busy machine, and
+/// planners that waited for one stood still.
+constexpr int niceness = 15;
+
+/// Calls `work` on a thread of its own, to which others are preferred.
 template <class Work>
-auto at_lowest_priority(Work work) {
+auto in_background(Work work) {
   return std::async(std::launch::async, [work = std::move(work)]() mutable {
-    set_name_and_lowest_priority("forecast");
+    set_name_and_niceness("forecast", niceness);
     return work();
   });
 }
@@ -151,7 +155,7 @@ ForecastServer::Outcome ForecastServer::make_forecast(const ForecastOptions& opt
   ForecastStart start = simulation_.forecast_start(options).get();
   if (!goal) shown_change_ = start.moment.change;
   std::unique_ptr<ForecastRun> run =
-      at_lowest_priority([&] {
+      in_background([&] {
         return std::make_unique<ForecastRun>(std::move(start.checkpoint), options, start.backend, threads_);
       }).get();
   if (goal) {
@@ -161,7 +165,7 @@ ForecastServer::Outcome ForecastServer::make_forecast(const ForecastOptions& opt
   std::atomic<bool> go_on{true};
   std::atomic<int> member{0};
   std::atomic<double> time{0};
-  std::future<std::optional<ForecastMaps>> maps = at_lowest_priority([&] {
+  std::future<std::optional<ForecastMaps>> maps = in_background([&] {
     return run->run([&](int now, double reached) {
       member = now;
       time = reached;

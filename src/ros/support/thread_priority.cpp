@@ -2,7 +2,6 @@
 
 #include <pthread.h>
 #include <ros/console.h>
-#include <sched.h>
 #include <sys/resource.h>
 #include <sys/syscall.h>
 #include <unistd.h>
@@ -20,13 +19,6 @@ void set_name_and_niceness(const char* name, int niceness) {
   if (errno == 0 && now >= niceness) return;
   if (setpriority(PRIO_PROCESS, thread, niceness) != 0)
     ROS_WARN("The niceness of the threads %s cannot be set to %d: %s", name, niceness, std::strerror(errno));
-}
-
-void set_name_and_lowest_priority(const char* name) {
-  pthread_setname_np(pthread_self(), name);
-  const sched_param none{};
-  if (const int error = pthread_setschedparam(pthread_self(), SCHED_IDLE, &none); error != 0)
-    ROS_WARN("The priority of the threads %s cannot be lowered: %s", name, std::strerror(error));
 }
 
 }  // namespace desert_sim
