@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "test/support/field_means.hpp"
 #include "test/support/running.hpp"
 
 namespace desert_sim {
@@ -46,13 +47,6 @@ TEST(PaperScenes, UnderwaterPlants) {
   scene.expect_balanced();
 }
 
-double mean_in_box(const Field& field, int west, int east, int south, int north) {
-  double sum = 0;
-  for (int y = south; y < north; ++y)
-    for (int x = west; x < east; ++x) sum += field.at(x, y);
-  return sum / ((east - west) * (north - south));
-}
-
 /// Sand after 400 s: between the swirls, and where they are.
 struct SweptSand {
   double between = 0, under = 0, highest = 0;
@@ -61,8 +55,8 @@ SweptSand swept_sand(const Settings& settings) {
   Running scene(shipped("desertscape_swirls", settings));
   const Field sand = scene.run(400).field(Layer::sand);
   scene.expect_balanced();
-  return {mean_in_box(sand, 105, 150, 56, 72),
-          (mean_in_box(sand, 112, 148, 82, 118) + mean_in_box(sand, 112, 148, 10, 46)) / 2,
+  return {mean_in(sand, {105, 150, 56, 72}),
+          (mean_in(sand, {112, 148, 82, 118}) + mean_in(sand, {112, 148, 10, 46})) / 2,
           *std::max_element(sand.values.begin(), sand.values.end())};
 }
 

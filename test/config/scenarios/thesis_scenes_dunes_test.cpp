@@ -4,22 +4,11 @@
 #include <cmath>
 #include <cstddef>
 
+#include "test/support/field_means.hpp"
 #include "test/support/running.hpp"
 
 namespace desert_sim {
 namespace {
-
-/// A box of cells, from the first to before the last.
-struct Box {
-  int west, east, south, north;
-};
-
-double mean_in(const Field& field, const Box& box) {
-  double sum = 0;
-  for (int y = box.south; y < box.north; ++y)
-    for (int x = box.west; x < box.east; ++x) sum += field.at(x, y);
-  return sum / ((box.east - box.west) * (box.north - box.south));
-}
 
 /// Correlation of cells with those four cells north of them, which is high where crests across the wind are
 /// long.

@@ -2,25 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 
+#include "test/support/field_means.hpp"
 #include "test/support/running.hpp"
 
 namespace desert_sim {
 namespace {
-
-double share_where(const Field& f, const std::function<bool(std::size_t)>& holds) {
-  double count = 0;
-  for (std::size_t i = 0; i < f.values.size(); ++i) count += holds(i) ? 1 : 0;
-  return count / static_cast<double>(f.values.size());
-}
-
-double mean_over(const Field& f, const std::function<bool(std::size_t)>& holds) {
-  double sum = 0, count = 0;
-  for (std::size_t i = 0; i < f.values.size(); ++i)
-    if (holds(i)) sum += static_cast<double>(f.values[i]), ++count;
-  return count > 0 ? sum / count : 0;
-}
 
 /// The rows of a field from `first` on, `rows` of them.
 Field rows_of(const Field& f, int first, int rows) {
