@@ -156,7 +156,7 @@ class Trip:
     def step(self):
         before = self.desert.rover.pose()
         reached = self.desert.step().step
-        # It may wait for a forecast, which only has the time that nobody else wants.
+        # It may wait for a forecast, to which steps and publishing are preferred.
         self.planner.wait(lambda s: s.terrain_step >= reached, "it does not act on step %d" % reached, 600)
         self.time += self.course.step
         now = self.desert.rover.pose()

@@ -83,10 +83,9 @@ constexpr auto parameter_table(const NodeParameters*) {
           "undo_memory", &P::undo_memory, 0, 1e6, "MB",
           "Of 10^6 bytes, for what ~undo and ~redo can bring back; the oldest strokes are forgotten first. "
           "0: nothing is kept."),
-      parameter(
-          "forecast_threads", &P::forecast_threads, 0, 4096, "1",
-          "Threads of the CPU backend that make forecasts, in time that no other thread wants; 0: one a "
-          "processor."));
+      parameter("forecast_threads", &P::forecast_threads, 0, 4096, "1",
+                "Threads of the CPU backend that make forecasts, of a niceness of 15; 0: one a "
+                "processor."));
 }
 static_assert(table_is_complete<NodeParameters>());
 
