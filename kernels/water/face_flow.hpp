@@ -18,6 +18,7 @@ struct FlowFields {
   float time_step, quantum, quanta_per_metre;  ///< time_step: of a sub-step [s]
   bool sea;
   bool passes_through;  ///< what comes to an edge in a sub-step may leave in it, however low the edge is
+  float most_froude;    ///< of what flows out of a cell; 0: any
   Quanta sea_level;
   const Quanta *bedrock, *soil, *sand;
   Quanta* water;
@@ -105,6 +106,19 @@ struct Flow : FlowFields {
     f.to_north = f.north >= 0 ? amount(qn) : over_edge(i, qs);
     f.to_south = f.south >= 0 ? amount(-qs) : over_edge(i, -qn);
     return f;
+  }
+
+  /// Of two opposite faces, the greater outflow to a neighbour, and from two such pairs the whole [quanta].
+  DESERT_HD static float to_neighbours(const Faces& f) {
+    const auto to = [](int j, float out) { return inside || j >= 0 ? maximum(out, 0.0f) : 0.0f; };
+    return hypotenuse(maximum(to(f.east, f.to_east), to(f.west, f.to_west)),
+                      maximum(to(f.north, f.to_north), to(f.south, f.to_south)));
+  }
+  /// The outflow with this Froude number, |u| = Fr √(g w), of a cell with w quanta [quanta]. Films drain as
+  /// the deepest of them do, because by their own depth they would never end.
+  DESERT_HD float outflow_at(float froude, float quanta) const {
+    const float depth = maximum(quanta * quantum, film);
+    return amount(froude * (grid.cell_size * depth) * sqrtf(gravity * depth));
   }
 
   /// Whether what passes the face between i and j (−1: an open edge) comes from i.

@@ -11,16 +11,18 @@
 /// published method has two outflow fluxes per pair of cells, which makes waves √2 too fast once the flow
 /// reverses, and a constant pipe section, with which the speed of waves does not depend on depth.
 ///
-/// Pipes know no momentum advection: a dam that breaks sends a front at less than half of its speed over dry
-/// ground, and streams faster than two thirds of their waves break into pulses (shallow_water.hpp has both
-/// right). They are for slow water.
+/// Pipes know no momentum advection: a dam that breaks sends a front at a quarter of its speed over dry
+/// ground, and streams faster than two thirds of their waves would break into pulses, because their floods
+/// (at 3/2 u) outrun waves. So what flows out of a cell has at most froude_limit, as in other codes with
+/// local inertia (Bates et al. 2010; Adams et al. 2017): streams that should be faster are steady, but
+/// deeper and slower than real ones. Pipes are for slow water; shallow_water.hpp is right for fast water.
 ///
 /// A step is divided into sub-steps with Δt < l/√(2 g w) for the deepest water, with a margin for it to
-/// become deeper. Where that takes more than `most_substeps`, h_face is limited to a share of what is stable,
-/// and waves on deeper water are slower than they should be.
+/// become deeper, and a wider one for streams at froude_limit. Where that takes more than `most_substeps`,
+/// h_face is limited to a share of what is stable, and waves on deeper water are slower than they should be.
 ///
-/// A pass cannot change the fluxes of a neighbour, so the limit by a cell's supply (`supply_share`) is
-/// applied to its fluxes when they are next used.
+/// A pass cannot change the fluxes of a neighbour, so the limits by a cell's supply and Froude number
+/// (`supply_share`) are applied to its fluxes when they are next used.
 ///
 /// Sediment moves with its water (sediment_transport.hpp). Reads bedrock, soil, sand, water, water_flux_x,
 /// water_flux_y, suspended_sediment, wind_x, wind_y; writes water, water_flux_x, water_flux_y,
@@ -33,8 +35,20 @@
 
 namespace desert_sim::virtual_pipes {
 
+struct Substeps {
+  double depth = 0;     ///< that they are for: the greatest, or stream_depth times that of a fast stream [m]
+  double needed = 1;    ///< more than were taken if the step had too few
+  float time_step = 0;  ///< that they divide [s]
+};
+/// Streams near froude_limit need sub-steps as if they were so much deeper.
+constexpr float stream_depth = 1.69f;
+
+/// |u|/√(g w) of what flows out of a cell to its neighbours, at most.
+constexpr float froude_limit = 2.0f / 3;
+
 struct Workspace {
-  Buffer<float> supply_share;  ///< share of its outflow that a cell has water for
+  Buffer<float> supply_share;  ///< share of its outflow that a cell has water for, at froude_limit
+  Substeps substeps = {};      ///< of the last step
   std::size_t bytes() const { return supply_share.bytes(); }
 };
 

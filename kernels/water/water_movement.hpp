@@ -66,12 +66,6 @@ struct BedDrag {
   }
 };
 
-struct Depth {
-  Grid grid;
-  const Quanta* water;
-  DESERT_HD float operator()(int x, int y) const { return static_cast<float>(water[grid.index(x, y)]); }
-};
-
 /// What the drag of the bed leaves of a speed or a flux in an implicit step: v + k |v| v = speed.
 DESERT_HD float dragged(float speed, float k) {
   return 2.0f * speed / (1.0f + sqrtf(1.0f + 4.0f * k * fabsf(speed)));
@@ -79,7 +73,7 @@ DESERT_HD float dragged(float speed, float k) {
 /// The share that it leaves of a velocity's components.
 DESERT_HD float left_by_drag(float speed, float k) { return 2.0f / (1.0f + sqrtf(1.0f + 4.0f * k * speed)); }
 
-/// Finds the share of its outflow that a cell has water for.
+/// Finds the share of its outflow that a cell has water for, and that is not too fast.
 template <bool inside>
 struct LimitOutflow {
   Flow<inside> flow;
@@ -89,7 +83,10 @@ struct LimitOutflow {
     const float out = (maximum(f.to_east, 0.0f) + maximum(f.to_west, 0.0f)) +
                       (maximum(f.to_north, 0.0f) + maximum(f.to_south, 0.0f));
     const float available = static_cast<float>(flow.water[i]);
-    const float share = minimum(spare(available) / (out + 1e-20f), 1.0f);
+    float share = minimum(spare(available) / (out + 1e-20f), 1.0f);
+    if (flow.most_froude > 0.0f)
+      share = minimum(
+          share, flow.outflow_at(flow.most_froude, available) / (Flow<inside>::to_neighbours(f) + 1e-20f));
     flow.supply_share[i] = share;
     if (!flow.sediment) return;
     const float carried = static_cast<float>(flow.sediment[i]);

@@ -18,7 +18,8 @@ Field rows_of(const Field& f, int first, int rows) {
   return part;
 }
 
-/// On the floor of the western half of the valley.
+/// On the floor of the western half of the valley. shallow_water leaves 0.23 to 0.26 of it bare, with banks
+/// on 0.45 of it; streams that broke into pulses left 0.46 bare, and banks on 0.27.
 TEST(Wadi, FloodSweepsItsBed) {
   Running scene(shipped("wadi", {"grid.width=192"}));
   const auto floor = [&](Layer layer) { return rows_of(scene.field(layer), 32, 64); };
@@ -46,8 +47,8 @@ TEST(Wadi, FloodSweepsItsBed) {
   EXPECT_LT(bare_before, 0.1);
   EXPECT_GT(flooded, 0.5);
   EXPECT_GT(load, 0.015) << "the flood carries sand [m]";
-  EXPECT_GT(bare, 0.25);
-  EXPECT_GT(banks, 0.02);
+  EXPECT_GT(bare, 0.15);
+  EXPECT_GT(banks, 0.3);
   EXPECT_GT(flowing, 0.02);
   scene.expect_balanced();
 }
@@ -56,7 +57,8 @@ TEST(Wadi, FloodSweepsItsBed) {
 /// Bodies of water deeper than 0.3 m, over eight neighbours.
 int ponds_of(const Field& water) { return static_cast<int>(find_dunes(water, water, 0, 0.3, 1).size()); }
 
-/// A river comes in, fills the deepest hollow, and drops its sand there; rain fills hollows on the plateau.
+/// A river comes in, fills the deepest hollow, and drops its sand there; rain fills hollows on the plateau:
+/// four of them by the end, as with shallow_water.
 TEST(RiverBend, FillsTheHollowAndDropsItsSand) {
   Running scene(shipped("river_bend"));
 
@@ -74,7 +76,7 @@ TEST(RiverBend, FillsTheHollowAndDropsItsSand) {
   EXPECT_GT(deepest[1], 1.3 * deepest[0]);
   EXPECT_NEAR(deepest[2], deepest[1], 0.15 * deepest[1]);
   EXPECT_GT(in_lake[2], in_lake[0] + 0.15);
-  EXPECT_GE(ponds_of(scene.field(Layer::water)), 5);
+  EXPECT_GE(ponds_of(scene.field(Layer::water)), 3);
   scene.expect_balanced();
 }
 #endif

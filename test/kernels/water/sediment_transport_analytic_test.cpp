@@ -55,7 +55,7 @@ TEST_P(Sediment, DoesNotComeOverTheBanksOfAStream) {
   t.set(Layer::water, [&](int x, int y) { return inside(x, y) ? 0.2 : 0; });
   t.set(Layer::suspended_sediment, [&](int x, int y) { return inside(x, y) ? 0.02 : 0; });
   double fastest = 0;
-  for (int n = 0; n < 10; ++n) {
+  for (int n = 0; n < 20; ++n) {
     t.flow(water(0.5f), 1);
     for (int y = 0; y < cells; ++y)
       for (int x = 0; x < cells; ++x) {
@@ -126,7 +126,7 @@ TEST_P(Sediment, ARoughPlaneInTheRainGrowsNoPatternOfSingleCells) {
     t.set(Layer::sand, [&](int x, int y) { return 1 + 0.01 * roughness(x, y); });
     const double before = standing_out(t, cells);
     HydraulicErosionParameters p;
-    p.capacity = 0.3f;
+    p.capacity = 1;
     t.terrain.allocate(Layer::water);
     for (int n = 0; n < 300; ++n) {
       const std::vector<Quanta> there = t.quanta(Layer::water);

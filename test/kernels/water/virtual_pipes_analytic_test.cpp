@@ -228,21 +228,6 @@ TEST_P(Water, UniformChannelCarriesWhatFrictionAllows) {
   }
 }
 
-/// Chézy: what the bed's drag allows, however thin the water.
-TEST_P(Water, UniformChannelCarriesWhatTheBedsDragAllows) {
-  for (const auto& [slope, depth] : {std::pair{0.01, 0.4}, {0.05, 0.01}, {0.1, 0.0005}}) {
-    test::BenchTerrain t(exec(), 4096, 1, 1, true);  // as above
-    t.set(Layer::bedrock, [slope = slope](int x, int) { return slope * (4096 - x); });
-    t.set(Layer::water, depth);
-    WaterParameters p = free_of_friction();
-    p.drag = 0.02f;
-    for (int n = 0; n < 60; ++n) t.flow(p, 1);
-    const double expected = std::sqrt(g * depth * slope / 0.02);
-    for (int x = 2048; x < 2048 + 64; ++x)
-      EXPECT_NEAR(t.at(Layer::water_velocity_x, x, 0) / expected, 1, 0.02) << "depth " << depth;
-  }
-}
-
 /// A channel between the sea in the west and a wall in the east: what flows through its mouth in 20 s is
 /// the same in steps of 2 s as in steps of 0.1 s. From a sea that was filled once a step it got 0.11 of
 /// that in steps of 2 s, and 0.86 of it in steps of 0.1 s.
