@@ -64,6 +64,7 @@ std::unique_ptr<Session> Session::from_checkpoint(const std::string& checkpoint,
 void Session::replace_simulation(std::unique_ptr<Simulation> simulation) {
   simulation->commands().history().set_memory(undo_memory_);
   simulation_ = std::move(simulation);
+  warned_.clear();
 }
 
 void Session::require_journal_of_this_scenario(const Journal& journal, const std::string& path) const {
@@ -90,6 +91,9 @@ Session::~Session() {
 void Session::step() {
   simulation_->step();
   ++ticks_;
+  for (const auto& [process, text] : simulation_->pipeline().warnings())
+    if (warned_.insert(process).second)
+      log_warning("step " + std::to_string(simulation_->steps()) + ": " + process + ": " + text);
 }
 
 Scenario Session::read_scenario(const command::LoadScenario& command) const {

@@ -37,6 +37,7 @@ class Session {
   /// rasters may be read is for the raster loader to decide.
   void confine_commands(const std::string& folder) { folder_ = folder; }
 
+  /// Logs a process's warning (Process::warning) once for each simulation, when it begins.
   void step();
   /// Applies a command and journals it. A refused command throws ConfigError and changes nothing.
   /// `with_change`: the result of an edit, undo or redo tells it cell by cell.
@@ -79,6 +80,7 @@ class Session {
   std::unique_ptr<JournalWriter> journal_;
   std::string journal_path_;
   std::set<std::string> loaded_files_;  ///< that the journal loads
+  std::set<std::string> warned_;        ///< processes whose warning has been logged
   std::uint64_t ticks_ = 0;
 };
 

@@ -90,6 +90,8 @@ void Diagnostics::check_simulation(Status& status) const {
   } else {
     status.summary(DiagnosticStatus::OK, states[static_cast<int>(r.state)]);
   }
+  for (const auto& [process, text] : r.warnings)
+    status.mergeSummary(DiagnosticStatus::WARN, process + ": " + text);
   status.add("state", states[static_cast<int>(r.state)]);
   status.add("scenario", r.scenario);
   status.add("backend", r.backend_choice);

@@ -1,7 +1,8 @@
 #pragma once
 /// What the node says on /diagnostics. Each part is OK unless:
 ///
-///   simulation    WARN: it is over 1 s behind, waits for /clock, or has not answered for 2 s.
+///   simulation    WARN: it is over 1 s behind, waits for /clock, or has not answered for 2 s, or a process
+///                 warns (Process::warning).
 ///                 ERROR: it has failed
 ///   mass balance  ERROR: some quanta are not accounted for
 ///   memory        WARN: too little is left for a reset or a load

@@ -224,6 +224,7 @@ std::future<StatusReport> SimulationThread::report(bool measure) {
     r.process_times = process_times_;
     r.balance = s.state().balance();
     r.changes = s.commands().describe_changes();
+    r.warnings = s.pipeline().warnings();
     r.wind_above = s.state().wind_above();
     r.undoable = s.commands().history().undoable();
     r.redoable = s.commands().history().redoable();

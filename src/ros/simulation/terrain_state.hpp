@@ -87,7 +87,8 @@ struct StatusReport {
   double lag = 0;                              ///< [s]
   std::vector<ProcessTime> process_times;      ///< means
   std::array<MaterialBalance, material_count> balance;
-  std::string changes;  ///< of parameters, by timeline and ramps
+  std::string changes;                          ///< of parameters, by timeline and ramps
+  std::map<std::string, std::string> warnings;  ///< of the last step, by process; see Process::warning
   wind::Vector wind_above;
   bool hashed = false;  ///< only while paused
   std::uint64_t hash = 0;

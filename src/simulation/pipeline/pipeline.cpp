@@ -288,6 +288,16 @@ double Pipeline::mean_count(const std::string& counter) const {
   return state_.steps ? static_cast<double>(count(counter)) / static_cast<double>(state_.steps) : 0.0;
 }
 
+std::map<std::string, std::string> Pipeline::warnings() const {
+  std::map<std::string, std::string> all;
+  for (const Stage& stage : stages_) {
+    if (!stage.process->warning) continue;
+    if (std::string text = stage.process->warning(state_, *stage.workspace); !text.empty())
+      all[stage.process->name] = std::move(text);
+  }
+  return all;
+}
+
 void Pipeline::edited(Layer layer) {
   for (const Process& process : table_.processes)
     if (process.edited) process.edited(state_, layer);

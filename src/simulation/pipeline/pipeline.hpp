@@ -2,6 +2,7 @@
 /// The pipeline: the processes of a scenario in their order, with what they keep. The list is made when the
 /// scenario is set or changed; a step is a loop over it.
 
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -56,6 +57,8 @@ class Pipeline {
   std::vector<MemoryPart> memory() const;
   std::uint64_t count(const std::string& counter) const;  ///< of all steps; see Process::counter
   double mean_count(const std::string& counter) const;    ///< of a step
+  /// Of the last step, by process; see Process::warning.
+  std::map<std::string, std::string> warnings() const;
 
   /// A process of this scenario.
   struct Stage {

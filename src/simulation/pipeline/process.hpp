@@ -123,6 +123,9 @@ struct Process {
   /// What the host counts after each step, also after one that was replayed from a recording. Null if
   /// nothing.
   std::function<void(StepContext&, ProcessWorkspace*)> after_step;
+  /// What of its last step was otherwise than its header says, and what to do; empty if nothing. Null if
+  /// that is never so.
+  std::function<std::string(const SimulationState&, const ProcessWorkspace&)> warning;
   /// Whether its next step starts the same work on the device as others before and after it, and reads
   /// nothing back.
   std::function<bool(const SimulationState&)> can_be_recorded = [](const SimulationState&) { return true; };

@@ -11,6 +11,7 @@
 #include "kernels/water/virtual_pipes.hpp"
 #include "kernels/water/water_sources.hpp"
 #include "kernels/water/water_velocity.hpp"
+#include "src/core/number_text.hpp"
 #include "src/scenario/section_with_list.hpp"
 #include "src/simulation/processes/limits.hpp"
 #include "src/simulation/processes/processes.hpp"
@@ -78,6 +79,21 @@ void add_water(StepContext& c, ProcessWorkspace*) {
 
 virtual_pipes::Workspace make_pipes(const SimulationState& state) {
   return {Buffer<float>(state.exec(), static_cast<std::size_t>(state.terrain.grid().cells()))};
+}
+
+/// A step that needed more than most_substeps.
+std::string too_few_substeps(const SimulationState& state, const ProcessWorkspace& workspace) {
+  const virtual_pipes::Substeps& last =
+      static_cast<const WorkspaceHolder<virtual_pipes::Workspace>&>(workspace).work.substeps;
+  const int most = state.scenario.get<WaterParameters>().most_substeps;
+  if (last.needed <= most) return "";
+  return "water " + number_text(last.depth) + " m deep, or a fast stream of " +
+         number_text(last.depth / virtual_pipes::stream_depth) + " m, needs " + number_text(last.needed, 6) +
+         " sub-steps in a step of " + number_text(last.time_step, 6) + " s, but water.most_substeps allows " +
+         std::to_string(most) +
+         ": waves on deep water are slower than they should be, and fast streams may break into pulses; "
+         "raise "
+         "water.most_substeps or lower run.time_step";
 }
 
 face_flow::StepInputs flow_inputs(StepContext& c) {
@@ -187,6 +203,7 @@ Process virtual_pipes_process() {
   p.active = has_water_model<WaterModel::pipes>;
   set_workspace<virtual_pipes::Workspace>(p, make_pipes);
   p.step = move_through_pipes;
+  p.warning = too_few_substeps;
   return p;
 }
 

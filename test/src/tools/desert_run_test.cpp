@@ -199,6 +199,16 @@ TEST_F(Run, QuietSaysNothing) {
   EXPECT_EQ(r.err, "");
 }
 
+TEST_F(Run, SaysOnceThatDeepWaterNeedsMoreSubsteps) {
+  const test::ProgramRun r =
+      run({scenario_, "--backend", "cpu", "--steps", "3", "--set", "water.sea=everywhere", "--set",
+           "water.enabled=true", "--set", "water.sea_level=30", "--set", "water.most_substeps=1"});
+  EXPECT_EQ(r.status, 0) << r.err;
+  const std::string said = "warning: step 1: virtual_pipes: water ";
+  EXPECT_NE(r.err.find(said), std::string::npos) << r.err;
+  EXPECT_EQ(r.err.find("water.most_substeps allows 1"), r.err.rfind("water.most_substeps allows 1")) << r.err;
+}
+
 TEST_F(Run, AutoSaysWhichBackendAndWhy) {
   const test::ProgramRun r = run({scenario_, "--steps", "1"});
   EXPECT_EQ(r.status, 0) << r.err;
