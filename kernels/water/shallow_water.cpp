@@ -19,11 +19,11 @@ struct Face {
 
   DESERT_HD Face(const Flow<inside>& flow, int i, int j) {
     const Quanta bed_i = flow.bed(i), bed_j = flow.bed(j), bed = bed_i > bed_j ? bed_i : bed_j;
-    const Quanta over_i = positive(bed_i + flow.water[i] - bed),
-                 over_j = positive(bed_j + flow.water[j] - bed);
-    depth_i = moving(flow.water[i], over_i);
-    depth_j = moving(flow.water[j], over_j);
-    drop = over_i - over_j;
+    const Quanta top_i = bed_i + flow.water[i] - bed, top_j = bed_j + flow.water[j] - bed;
+    depth_i = moving(flow.water[i], positive(top_i));
+    depth_j = moving(flow.water[j], positive(top_j));
+    const Quanta lowest = -static_cast<Quanta>(minimum(flow.grid.cell_size * flow.quanta_per_metre, 5e8f));
+    drop = (top_i > lowest ? top_i : lowest) - (top_j > lowest ? top_j : lowest);
   }
   DESERT_HD static Quanta positive(Quanta v) { return v > 0 ? v : 0; }
   /// min(w, 2 over)
@@ -127,9 +127,13 @@ struct Accelerate {
             0.25f * (right_velocity + (across[i] + across[j]))};
   }
 
-  /// The velocity on a face after the sub-step.
-  DESERT_HD float accelerated(const Face<inside>& face, const Inflow& in, int i, int j, float own,
-                              const float* wind) const {
+  /// The velocity on a face after the sub-step, and h_m [m].
+  struct Moved {
+    float velocity, depth;
+  };
+  /// `behind`, `ahead`: the cells beyond i and j.
+  DESERT_HD Moved accelerated(const Face<inside>& face, const Inflow& in, int behind, int i, int j, int ahead,
+                              float own, const float* wind) const {
     const float l = flow.grid.cell_size, dt = flow.time_step;
     float pull = face.level() ? 0.0f : gravity * (static_cast<float>(face.drop) * flow.quantum / l);
     if (waves.strength > 0.0f) pull += waves.pull(flow, i, j, wind);
@@ -139,20 +143,19 @@ struct Accelerate {
     // No more than all of a volume is replaced in a sub-step.
     const float share = minimum(dt / (l * l * maximum(mean, film)), 1.0f / (in.sum + 1e-20f));
     const float pushed = friction * ((own - share * in.change) + dt * pull);
-    const float depth = face.depth(flow, pushed);
+    const Quanta before_i = inside || behind >= 0 ? flow.water[behind] : -1,
+                 before_j = inside || ahead >= 0 ? flow.water[ahead] : -1;
+    const float depth = face.mixed_depth(flow, pushed, pushed > 0.0f ? before_i : before_j);
     const float held = maximum(depth, film);
     const float found = pushed * left_by_drag(hypotenuse(pushed, in.across), drag.of(held) * dt / held);
-    return depth > film ? found : 0.0f;
+    return {face.depth(flow, pushed) > film ? found : 0.0f, depth};
   }
 
   /// Stores the velocity on a face and the flux through it.
-  DESERT_HD void store(const Face<inside>& face, float found, int behind, int i, int j, int ahead,
-                       float* velocity, float* flux) const {
-    const float l = flow.grid.cell_size;
-    const Quanta before_i = inside || behind >= 0 ? flow.water[behind] : -1,
-                 before_j = inside || ahead >= 0 ? flow.water[ahead] : -1;
-    const float depth = face.mixed_depth(flow, found, found > 0.0f ? before_i : before_j);
-    const float wanted = found * (l * depth);
+  DESERT_HD void store(const Face<inside>& face, Moved moved, int i, int j, float* velocity,
+                       float* flux) const {
+    const float l = flow.grid.cell_size, found = moved.velocity;
+    const float wanted = found * (l * moved.depth);
     const bool stops = face.level() && flow.amount(fabsf(wanted)) < 0.5f;
     const float through = stops ? 0.0f : wanted;
     velocity[i] = stops ? 0.0f : found;
@@ -168,8 +171,9 @@ struct Accelerate {
       const Face<inside> face(flow, i, east);
       const Inflow in = inflow(before.velocity_x, before.flux_x, before.velocity_y, before.flux_y, west, i,
                                east, north, south, inside || south >= 0 ? flow.south(x + 1, y) : -1);
-      store(face, accelerated(face, in, i, east, before.velocity_x[i], waves.wind_x), west, i, east,
-            flow.east(x + 1, y), velocity_x, flow.flux_x);
+      store(face,
+            accelerated(face, in, west, i, east, flow.east(x + 1, y), before.velocity_x[i], waves.wind_x), i,
+            east, velocity_x, flow.flux_x);
     } else {
       velocity_x[i] = flow.flux_x[i] = 0.0f;
     }
@@ -177,8 +181,9 @@ struct Accelerate {
       const Face<inside> face(flow, i, north);
       const Inflow in = inflow(before.velocity_y, before.flux_y, before.velocity_x, before.flux_x, south, i,
                                north, east, west, inside || west >= 0 ? flow.west(x, y + 1) : -1);
-      store(face, accelerated(face, in, i, north, before.velocity_y[i], waves.wind_y), south, i, north,
-            flow.north(x, y + 1), velocity_y, flow.flux_y);
+      store(face,
+            accelerated(face, in, south, i, north, flow.north(x, y + 1), before.velocity_y[i], waves.wind_y),
+            i, north, velocity_y, flow.flux_y);
     } else {
       velocity_y[i] = flow.flux_y[i] = 0.0f;
     }

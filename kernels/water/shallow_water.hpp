@@ -14,14 +14,16 @@
 ///              grid spread. In slow water h_m is the mean of h_f and of that of the downstream cell (at most
 ///              h_f/4 from h_f), in fast water (Fr ≥ 1) h_f + ½ minmod(its rises from the cell behind and to
 ///              the cell ahead), and between them between
-///   slope      W_x = (max(W_j, H_f) − max(W_i, H_f))/l,  so that water that falls is pushed by its own depth
+///   slope      W_x = (max(W_j, H_f − l) − max(W_i, H_f − l))/l: a bed that falls by more than 45° is a step,
+///              over which water is not pushed by all of the height that it falls
 ///   advection  Σ max(q̄_in, 0) (u − u_in)/(l h̄)  over the four sides of the face's own volume, which lies
 ///              between the middles of i and j; q̄ is the mean of the fluxes of two faces per metre, u_in the
 ///              velocity beyond the side, and h̄ the mean of w_i and w_j, or h_f where that is more and the
 ///              flow becomes faster. So momentum is conserved where the flow becomes slower, and a bore has
 ///              its speed and height; where it becomes faster, energy is, and the front on dry ground is not
 ///              held back.
-///   friction   implicit, by the whole velocity, with the mean of v on the four faces around
+///   friction   implicit, by the whole velocity, with the mean of v on the four faces around, and by h_m: by
+///              the upstream depth streams at an angle to the grid spread
 ///
 /// A lake stays at rest, to the bit, wet and dry: where surfaces are level nothing pulls. Films
 /// (face_flow.hpp) have no velocity, but their water is kept. Depths never become negative: a cell's outflow

@@ -274,8 +274,8 @@ TEST_P(ShallowWater, UniformFlowHasItsDepthAndNoPulses) {
 }
 
 /// A stream in a valley z = 20 − S s + k n² has the section that uniform flow has, Q = ∫ h^(5/3) √S/n dn with
-/// h = h₀ − k n², at each angle to the grid. Across the diagonal it is 3.0 % too large here, in a
-/// stream of 48 cells, 3.6 % with 24.
+/// h = h₀ − k n², at each angle to the grid. Across the diagonal it is 1.1 % too large here, in a
+/// stream of 38 cells: 3.0 % where drag goes by the upstream depth.
 TEST_P(ShallowWater, AStreamHasItsSectionAtEachAngle) {
   const double slope = 0.02, manning = 0.03, curvature = 0.0005, discharge = 6;
   const auto discharge_of = [&](double h0) {
@@ -312,7 +312,24 @@ TEST_P(ShallowWater, AStreamHasItsSectionAtEachAngle) {
     for (int i = 0; i < cells * cells; ++i)
       if (const double far = along(i % cells + 0.5, i / cells + 0.5); far > -10 && far < 40)
         section += w[static_cast<std::size_t>(i)] * std::ldexp(1.0, -20) / 50;
-    EXPECT_NEAR(section / expected, 1, 0.035) << degrees << " degrees";
+    EXPECT_NEAR(section / expected, 1, 0.02) << degrees << " degrees";
+  }
+}
+
+/// A sheet of water whose bed falls by many times its depth from cell to cell has Manning's speed, too.
+/// Pushed by its own depth only, as over a step, 2 mm on a slope of 0.05 had a fifth of it.
+TEST_P(ShallowWater, ASheetOnASlopeFeelsTheWholeSlope) {
+  const double manning = 0.03;
+  for (const auto& [slope, depth] : {std::pair{0.05, 0.002}, {0.3, 0.01}}) {
+    test::BenchTerrain t(exec(), 512, 3);  // on a torus, away from the ramp's cliff
+    t.set(Layer::bedrock, [slope = slope](int x, int) { return slope * (512 - x); });
+    t.set(Layer::water, depth);
+    WaterParameters p = with_momentum();
+    p.manning = static_cast<float>(manning);
+    for (int n = 0; n < 20; ++n) t.flow(p, 1, n);
+    const double expected = std::pow(depth, 2.0 / 3) * std::sqrt(slope) / manning;
+    for (int x = 300; x < 320; ++x)
+      EXPECT_NEAR(t.at(Layer::water_velocity_x, x, 1) / expected, 1, 0.02) << "slope " << slope;
   }
 }
 
