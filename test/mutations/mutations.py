@@ -432,7 +432,7 @@ MUTATIONS = [Mutation(*row) for row in (
      "friction slows the flow", "kernels_analytic *Water.UniformChannel*"),
     ("drag_dropped", "kernels/water/virtual_pipes.cpp",
      "/ flow.grid.cell_size / (face * face);", "/ flow.grid.cell_size;",
-     "the drag of the bed holds shallow water most", "kernels_analytic *Water.UniformChannel*"),
+     "the drag of the bed holds shallow water most", "kernels_analytic *WaterStreams.BelowTheLimit*"),
     ("velocity_of_both_faces", "kernels/water/water_movement.hpp",
      "? 0.5f * flow.grid.cell_size /", "? flow.grid.cell_size /",
      "velocity is the mean of two faces", "kernels_analytic *Water.UniformChannel*"),
