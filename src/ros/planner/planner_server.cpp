@@ -56,11 +56,13 @@ PlannerServer::PlannerServer(const ros::NodeHandle& node, const ros::NodeHandle&
     drive_service_ = node_.resolveName(setup_.node.rover_node + "/drive");
   }
   if (setup_.planner.planner == PlannerKind::forecast) {
+    // One source alone: ~forecast/maps has a horizon of its own, and makes the desert run ahead once more.
     const std::string name = setup_.node.terrain_node + "/forecast";
-    forecast_subscriber_ = node_.subscribe<Forecast>(
-        name + "/maps", 2, [this](const ForecastConstPtr& forecast) { take_forecast(*forecast); });
     if (setup_.node.forecast_period > 0)
       forecast_client_ = std::make_unique<ForecastClient>(node_, name, false);
+    else
+      forecast_subscriber_ = node_.subscribe<Forecast>(
+          name + "/maps", 2, [this](const ForecastConstPtr& forecast) { take_forecast(*forecast); });
   }
   cancel_server_ = private_node_.advertiseService("cancel", &PlannerServer::cancel, this);
   action_ = std::make_unique<MoveBaseServer>(

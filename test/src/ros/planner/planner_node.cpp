@@ -9,6 +9,9 @@
 #include <move_base_msgs/MoveBaseAction.h>
 #include <nav_msgs/OccupancyGrid.h>
 #include <nav_msgs/Path.h>
+#include <ros/master.h>
+
+#include <set>
 
 #include "include/desert_sim/testing/inbox.hpp"
 #include "test/support/ros/child_process.hpp"
@@ -316,6 +319,25 @@ class LateForecasts {
   Server server_{node_, "/late_forecast", [this](Server::GoalHandle goal) { take(goal); },
                  [this](Server::GoalHandle goal) { cancel(goal); }, false};
 };
+
+std::set<std::string> subscribers(const std::string& topic) {
+  XmlRpc::XmlRpcValue arguments, answer, state;
+  arguments[0] = ros::this_node::getName();
+  std::set<std::string> names;
+  if (!ros::master::execute("getSystemState", arguments, answer, state, false)) return names;
+  for (int n = 0; n < state[1].size(); ++n)
+    if (std::string(state[1][n][0]) == topic)
+      for (int k = 0; k < state[1][n][1].size(); ++k) names.insert(state[1][n][1][k]);
+  return names;
+}
+
+/// Forecasts of two sources have two horizons, and tell of two futures.
+TEST_F(Planner, AsksForForecastsOrTakesThoseOfTheTopic) {
+  EXPECT_EQ(subscribers("/desert_sim/forecast/maps"), std::set<std::string>{"/forecast_planner"});
+  EXPECT_EQ(subscribers("/desert_sim/forecast/result"), std::set<std::string>{});
+  EXPECT_EQ(subscribers("/late_forecast/maps"), std::set<std::string>{});
+  EXPECT_EQ(subscribers("/late_forecast/result"), std::set<std::string>{"/late_planner"});
+}
 
 TEST_F(Planner, WaitsForALateForecastAndAsksForACoarserOneThen) {
   Listener<nav_msgs::OccupancyGrid> costs("costmap");
