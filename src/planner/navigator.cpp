@@ -63,24 +63,27 @@ void Navigator::set_forecast(const ForecastCosts& forecast) {
     throw ConfigError("the forecast has not one grid of costs for each of its times");
   const GridFrame& f = forecast.frame;
   const std::size_t cells = static_cast<std::size_t>(f.width) * static_cast<std::size_t>(f.height);
-  std::vector<std::pair<double, std::shared_ptr<const CostGrid>>> grids;
+  std::vector<ForecastMoment> moments;
   for (std::size_t n = 0; n < forecast.times.size(); ++n) {
     if (forecast.traversability[n].size() != cells)
       throw ConfigError("costs of the forecast have another size than its grid");
     // Counted from its beginning: from one that is far off, numbers that rise may not.
     const double time = forecast.made + forecast.times[n];
-    if (!std::isfinite(time) || (n > 0 && !(time > grids.back().first)))
+    if (!std::isfinite(time) || (n > 0 && !(time > moments.back().time)))
       throw ConfigError("the times of the forecast do not rise: moment " + std::to_string(n) + " is at " +
                         number_text(time) + " s" +
-                        (n > 0 ? ", the one before at " + number_text(grids.back().first) + " s" : ""));
+                        (n > 0 ? ", the one before at " + number_text(moments.back().time) + " s" : ""));
     auto grid = std::make_shared<CostGrid>(f, parameters_.costs());
     std::vector<CellIndex> changed;
     grid->update({0, 0, f.width, f.height}, forecast.traversability[n].data(), changed);
     for (const GridPoint& p : avoided_) grid->mark(p, parameters_.avoid_radius, true, changed);
-    grids.emplace_back(time, std::move(grid));
+    moments.push_back({time, forecast.made, std::move(grid)});
   }
-  forecast_ = std::move(grids);
-  forecast_made_ = forecast.made;
+  for (ForecastMoment& before : forecast_) {  // of one that began later the time has been set back
+    const bool beyond = moments.empty() || before.time > moments.back().time;
+    if (beyond && before.made <= forecast.made) moments.push_back(std::move(before));
+  }
+  forecast_ = std::move(moments);
   new_forecast_ = true;
 }
 

@@ -74,6 +74,8 @@ class Navigator {
   void update(const GridFrame& frame, const CostGrid::Box& box, const float* traversability);
   const CostGrid* grid() const { return grid_.get(); }
   const std::string& ground_refusal() const { return ground_refusal_; }
+  /// Takes the place of the one before up to its last moment. What that one tells of later times still holds
+  /// until it is too old: a forecast that does not reach so far does not say that nothing will happen then.
   void set_forecast(const ForecastCosts& forecast);
   /// Whom it asks for the layers of costs by heading (planner ompl), when it plans: of the grid's size, or
   /// empty.
@@ -143,8 +145,11 @@ class Navigator {
   std::unique_ptr<FieldPlanner> field_, reference_;
   std::vector<CellIndex> changed_;  ///< costs that the field does not know of yet
   bool ground_changed_ = false;     ///< since the path was looked at
-  std::vector<std::pair<double, std::shared_ptr<const CostGrid>>> forecast_;  ///< by time
-  double forecast_made_ = 0;
+  struct ForecastMoment {
+    double time, made;  ///< of the moment, and at which its forecast began [s]
+    std::shared_ptr<const CostGrid> grid;
+  };
+  std::vector<ForecastMoment> forecast_;  ///< by time
   bool new_forecast_ = false;
   LayerSource layer_source_;
 

@@ -147,13 +147,14 @@ std::string Navigator::plan_by_ompl(const Place& start, const Place& goal, GridP
 TimedCosts Navigator::timed_costs() {
   TimedCosts costs{{now_}, {std::make_shared<const CostGrid>(*grid_)}};
   status_.forecast_age = -1;
-  if (forecast_.empty() || now_ - forecast_made_ > parameters_.forecast_age) return costs;
-  status_.forecast_age = now_ - forecast_made_;
-  for (const auto& [time, grid] : forecast_)
-    if (time > now_) {
-      costs.times.push_back(time);
-      costs.grids.push_back(grid);
-    }
+  for (const ForecastMoment& moment : forecast_) {
+    const double age = now_ - moment.made;
+    if (age > parameters_.forecast_age) continue;
+    if (status_.forecast_age < 0) status_.forecast_age = age;  // the newest comes first
+    if (moment.time <= now_) continue;
+    costs.times.push_back(moment.time);
+    costs.grids.push_back(moment.grid);
+  }
   return costs;
 }
 

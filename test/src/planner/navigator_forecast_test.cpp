@@ -1,4 +1,4 @@
-// Navigating through forecasts: waiting, and what is refused.
+// Navigating through forecasts: waiting, and what another forecast changes.
 #include <algorithm>
 #include <cmath>
 
@@ -41,6 +41,84 @@ TEST_F(NavigatingByForecast, PlansThroughTheForecast) {
   EXPECT_GT(t, 200);
   forecast.frame.width = 5;
   EXPECT_THROW(patient.set_forecast(forecast), ConfigError);
+}
+
+/// A rover in a channel, the south of the ground, down which a flood comes. A rock on its bank leaves a
+/// narrow way in the north.
+class BeforeAFlood : public test::Navigating {
+ protected:
+  BeforeAFlood() : Navigating(with_forecasts()) { ground(rock); }
+  static PlannerParameters with_forecasts() {
+    PlannerParameters p;
+    p.planner = PlannerKind::forecast;
+    p.speed = p.forecast_speed = 0.2;
+    return p;
+  }
+  static float rock(int x, int y) { return x > 44 && x < 54 && y >= 30 && y < 54 ? 0.0F : 1.0F; }
+  static float flood(int x, int y) {
+    const bool island = x >= 66 && x < 74 && y >= 6 && y < 14;
+    return y < 30 && !island ? 0.0F : rock(x, y);
+  }
+  static ForecastCosts forecast(double made, const std::vector<double>& times,
+                                const test::Traversability& before = rock,
+                                const test::Traversability& then = flood) {
+    ForecastCosts told{made, times, {}, frame};
+    for (const double t : times)
+      told.traversability.push_back(test::values_of(frame, floods(made + t) ? then : before));
+    return told;
+  }
+  static bool floods(double time) { return time >= 120 && time < 340; }
+  static double northernmost(const Navigator& navigator) {
+    double y = 0;
+    for (const GridPoint& p : navigator.path()) y = std::max(y, p.y);
+    return y;
+  }
+  bool stands_on(const test::Traversability& t) const {
+    CostGrid grid(frame, parameters_.costs());
+    test::fill(grid, t);
+    return grid.cost(*grid.cell_at({rover_.pose.x, rover_.pose.y})) != CostGrid::lethal;
+  }
+};
+
+/// Nothing in it says that there will be no flood.
+TEST_F(BeforeAFlood, AForecastThatEndsBeforeItDoesNotUndoTheOneThatTellsOfIt) {
+  go(35, 20);
+  navigator_.set_forecast(forecast(time_, {20, 40, 60, 80, 100, 120, 140, 160, 180, 200}));
+  run(1);
+  ASSERT_GT(northernmost(navigator_), 27) << "it has no time to pass the rock in the channel";
+  for (int n = 0; n < 10; ++n) {
+    navigator_.set_forecast(forecast(time_, {10, 20}));
+    run(4);
+    EXPECT_EQ(status().replans, 0) << time_ << ": " << status().last_replan;
+    EXPECT_GT(northernmost(navigator_), 27);
+    if (n % 2 == 0) navigator_.set_forecast(forecast(time_, {20, 40, 60, 80, 100, 120, 140, 160, 180, 200}));
+    run(4);
+  }
+  EXPECT_EQ(status().replans, 0) << status().last_replan;
+}
+
+TEST_F(BeforeAFlood, WhatAForecastTellsOfLaterTimesHoldsUntilItIsTooOld) {
+  parameters_.forecast_age = 15;
+  Navigator forgetful(parameters_);
+  forgetful.update(frame, {0, 0, frame.width, frame.height}, test::values_of(frame, rock).data());
+  const auto act = [&](double time) { forgetful.act(time, rover_.pose, RoverCondition::driving, ""); };
+  forgetful.set_goal({35, 20, 0}, 0);
+  forgetful.set_forecast(forecast(0, {80, 100, 120}));
+  act(1);
+  forgetful.set_forecast(forecast(10, {40}));
+  act(10);
+  EXPECT_EQ(forgetful.status().replans, 0) << forgetful.status().last_replan;
+  forgetful.set_forecast(forecast(20, {40}));
+  act(20);
+  EXPECT_NE(forgetful.status().last_replan.find("earlier"), std::string::npos)
+      << forgetful.status().last_replan;
+  EXPECT_LT(northernmost(forgetful), 21);
+  // The time is set back: what was told before was of another terrain.
+  forgetful.set_forecast(forecast(20, {80, 100}));
+  forgetful.set_goal({35, 20, 0}, 0);
+  forgetful.set_forecast(forecast(5, {40}));
+  act(5);
+  EXPECT_LT(northernmost(forgetful), 21);
 }
 
 TEST_F(NavigatingByForecast, RefusesForecastsWhoseTimesDoNotRise) {
