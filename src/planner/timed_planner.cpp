@@ -46,7 +46,7 @@ struct TimedPlanner::Search {
     std::uint32_t before = 0;              ///< number of that cell's interval
     bool closed = false;
   };
-  std::size_t slots;
+  std::size_t slots, begin;  ///< begin: number of the interval in which the rover is at first
   CellIndex goal;
   const std::vector<bool>& within;
   std::vector<Reached> reached = {};  ///< by cell, and first slot of the interval
@@ -139,38 +139,50 @@ void TimedPlanner::let_flee(CellIndex start) {
     }
 }
 
+std::vector<TimedPoint> TimedPlanner::path_to(const Search& search, std::size_t interval,
+                                              double departure) const {
+  std::vector<TimedPoint> path;
+  for (std::size_t at = interval;; at = search.reached[at].before) {
+    const Search::Reached& r = search.reached[at];
+    path.push_back({frame_.centre(static_cast<CellIndex>(at / search.slots)), r.arrival, departure});
+    if (at == search.begin) break;
+    departure = r.departed;
+  }
+  std::reverse(path.begin(), path.end());
+  return path;
+}
+
 std::vector<TimedPoint> TimedPlanner::plan(CellIndex start, CellIndex goal, const std::vector<bool>& within) {
   expanded_ = 0;
+  shelter_.clear();
   if (cost(start, 0) == CostGrid::lethal) let_flee(start);
   if (cost(start, 0) == CostGrid::lethal) return {};
-  Search search{slots_.size(), goal, within};
+  Search search{slots_.size(), start * slots_.size(), goal, within};
   search.reached.resize(frame_.size() * search.slots);
   const double now = costs_.times.front();
-  search.reached[start * search.slots].arrival = now;
+  search.reached[search.begin].arrival = now;
   search.open.push({now, now, start, 0});
+  const GridPoint q = frame_.centre(goal);
+  std::size_t shelter = search.begin;
+  double nearest = never;
   while (!search.open.empty()) {
     const Label label = search.open.top();
     search.open.pop();
-    Search::Reached& here = search.reached[label.cell * search.slots + label.first];
+    const std::size_t interval = label.cell * search.slots + label.first;
+    Search::Reached& here = search.reached[interval];
     if (here.closed) continue;
     here.closed = true;
     ++expanded_;
-    if (label.cell != goal) {
-      expand(search, label);
-      continue;
+    if (label.cell == goal) return path_to(search, interval, here.arrival);
+    expand(search, label);
+    const GridPoint p = frame_.centre(label.cell);
+    const double distance = std::hypot(q.x - p.x, q.y - p.y);
+    if (distance < nearest && last_of(label.cell, label.first) + 1 == search.slots) {
+      nearest = distance;
+      shelter = interval;
     }
-    std::vector<TimedPoint> path;
-    double departure = here.arrival;
-    for (std::size_t at = label.cell * search.slots + label.first;; at = search.reached[at].before) {
-      const Search::Reached& r = search.reached[at];
-      const auto cell = static_cast<CellIndex>(at / search.slots);
-      path.push_back({frame_.centre(cell), r.arrival, departure});
-      if (cell == start && at % search.slots == 0) break;
-      departure = r.departed;
-    }
-    std::reverse(path.begin(), path.end());
-    return path;
   }
+  if (nearest < never) shelter_ = path_to(search, shelter, never);
   return {};
 }
 

@@ -47,6 +47,9 @@ class TimedPlanner {
   /// then, so that a rover can flee.
   /// `within`, if it is not empty, holds for each cell of the grid whether the path may cross it.
   std::vector<TimedPoint> plan(CellIndex start, CellIndex goal, const std::vector<bool>& within = {});
+  /// Where the last plan() found no way: that to a shelter, the cell nearest to the goal of those that can be
+  /// reached and are passable from then on. Its last departure is never (infinity). Empty if there is none.
+  const std::vector<TimedPoint>& shelter() const { return shelter_; }
   /// Cells and intervals that the last plan() has looked at.
   std::size_t expanded() const { return expanded_; }
 
@@ -62,6 +65,8 @@ class TimedPlanner {
   /// When a step that departs at `time` arrives; none if ground becomes lethal meanwhile.
   std::optional<double> arrival(CellIndex from, CellIndex to, double time, double length) const;
   void expand(Search& search, const Label& label) const;
+  /// The way to an interval that has been reached, which the rover leaves at `departure`.
+  std::vector<TimedPoint> path_to(const Search& search, std::size_t interval, double departure) const;
   void let_flee(CellIndex start);
 
   TimedCosts costs_;
@@ -69,6 +74,7 @@ class TimedPlanner {
   const CostGrid& frame_;
   std::vector<std::vector<std::uint8_t>> slots_;  ///< costs from each moment to the next
   double worst_ = CostGrid::cheapest;
+  std::vector<TimedPoint> shelter_;
   std::size_t expanded_ = 0;
 };
 

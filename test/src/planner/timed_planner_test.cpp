@@ -94,6 +94,32 @@ TEST(TimedPlanner, FleesFromWhereADuneWillBe) {
   EXPECT_LT(path.back().arrival, 50);
 }
 
+/// The ground west of x is lethal from then on, but for a strip of it.
+std::shared_ptr<const CostGrid> flood(int x, int strip_from, int strip_to) {
+  return ground([=](int cx, int cy) { return cx < x && (cy < strip_from || cy > strip_to) ? 0.0F : 1.0F; });
+}
+
+TEST(TimedPlanner, WhereNoWayLeadsToTheGoalItKnowsTheNearestShelter) {
+  const auto grid = free_ground();
+  const CellIndex start = grid->cell(30, 10), goal = grid->cell(10, 10);
+  const TimedCosts costs{{0, 30, 60}, {grid, grid, flood(40, 3, 5)}};
+  TimedPlanner planner(costs, {0.5, 0});
+  ASSERT_TRUE(planner.plan(start, goal).empty()) << "the goal is 40 s away";
+  const std::vector<TimedPoint> path = planner.shelter();
+  ASSERT_FALSE(path.empty());
+  expect_passable(costs, path);
+  EXPECT_EQ(path.front().point.x, grid->centre(start).x);
+  EXPECT_EQ(path.back().point.y, 4.5) << "the strip has a cell of margin";
+  EXPECT_TRUE(std::isinf(path.back().departure));
+  // From 30 s on only the strip counts as passable, and along it a rover comes as near as it can.
+  EXPECT_NEAR(path.back().point.x, 10.5, 1e-9);
+  EXPECT_FALSE(planner.plan(start, grid->cell(25, 10)).empty());
+  EXPECT_TRUE(planner.shelter().empty()) << "a way leads to the goal";
+  TimedPlanner lost({{0, 30, 60}, {grid, grid, flood(100, 30, 30)}}, {0.5, 0});
+  EXPECT_TRUE(lost.plan(start, goal).empty());
+  EXPECT_TRUE(lost.shelter().empty()) << "nowhere can it stay";
+}
+
 TEST(TimedPlanner, CostsSlowItDownAndStepsGoOnAtTheNewCost) {
   const auto slow = ground([](int, int) { return 0.01F; });
   const TimedCosts still{{0}, {slow}};
