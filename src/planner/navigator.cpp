@@ -262,22 +262,38 @@ std::vector<TimedPoint> Navigator::schedule() const {
 
 DriveCommand Navigator::follow() {
   status_.remaining = pursuit_.left();
-  if (!schedule_.empty()) {
-    // Not ahead of the forecast: the ground ahead may not be free yet.
-    double way = 0;
-    for (std::size_t n = 0; n < schedule_.size(); ++n) {
-      if (n > 0)
-        way += std::hypot(schedule_[n].point.x - schedule_[n - 1].point.x,
-                          schedule_[n].point.y - schedule_[n - 1].point.y);
-      if (way < pursuit_.done() - 1e-9) continue;
-      if (schedule_[n].departure > now_ + 1e-9 && schedule_[n].departure > schedule_[n].arrival + 1)
-        return wait("until the ground ahead is free, " + number_text(schedule_[n].departure - now_) + " s");
-      break;
-    }
+  // Not ahead of the forecast: the ground ahead may not be free yet. It waits in the cell in which it is to.
+  const double near = grid_->frame().cell_size / 2;
+  double way = 0;
+  for (std::size_t n = 0; n < schedule_.size(); ++n) {
+    if (n > 0)
+      way += std::hypot(schedule_[n].point.x - schedule_[n - 1].point.x,
+                        schedule_[n].point.y - schedule_[n - 1].point.y);
+    if (way < pursuit_.done() - near) continue;
+    if (way > pursuit_.done() + near) break;
+    if (std::isinf(schedule_[n].departure)) return wait_in_shelter();
+    if (schedule_[n].departure > now_ + 1e-9 && schedule_[n].departure > schedule_[n].arrival + 1)
+      return wait("until the ground ahead is free, " + number_text(schedule_[n].departure - now_) + " s");
   }
   status_.state = NavigatorState::driving;
   status_.reason.clear();
   return pursuit_.command();
+}
+
+/// Until a forecast tells of a way, or there has been none over the present ground either for too long.
+DriveCommand Navigator::wait_in_shelter() {
+  if (now_ - last_attempt_.value_or(now_) >= parameters_.replan_pause) {
+    last_attempt_ = now_;
+    Place start, goal;
+    GridPath path;
+    std::string problem = places(start, goal);
+    if (problem.empty()) problem = plan_by_field(start, goal, path);
+    if (problem.empty()) no_path_since_.reset();
+    if (!problem.empty() && !no_path_since_) no_path_since_ = now_;
+    if (no_path_since_ && now_ - *no_path_since_ >= parameters_.no_path_patience)
+      return finish(NavigatorState::no_path, problem + ", and none with waiting as the forecast tells");
+  }
+  return wait("no way leads to the goal as the forecast tells; the ground here stays passable");
 }
 
 }  // namespace desert_sim

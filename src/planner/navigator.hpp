@@ -118,6 +118,7 @@ class Navigator {
   DriveCommand recover();
   void begin_recovery(const std::string& why);
   DriveCommand follow();
+  DriveCommand wait_in_shelter();
 
   // ---- planning
   /// Why another path is needed; empty if the present one will do.
@@ -131,8 +132,10 @@ class Navigator {
   std::string renew_schedule();
   /// The cells of what remains of the path, and those around the rover.
   std::vector<bool> cells_of_path() const;
-  /// Where the path begins and ends; why there is none otherwise.
-  std::string places(Place& start, Place& goal) const;
+  /// Where the path begins and ends; why there is none otherwise. With `later` a goal counts that is not
+  /// passable now.
+  std::string places(Place& start, Place& goal, bool later = false) const;
+  bool believes_forecast() const;
   void prepare_field(const Place& start, const Place& goal);
   TimedCosts timed_costs();
   void take(GridPath path, const Place& goal);
@@ -159,6 +162,7 @@ class Navigator {
   PurePursuit pursuit_;
   std::vector<double> cost_left_;  ///< of the path from each of its points on, when it was planned
   std::vector<TimedPoint> schedule_;
+  bool to_shelter_ = false;  ///< the path does not lead to the goal, but to a shelter (TimedPlanner)
   std::uint64_t path_number_ = 0;
   std::optional<double> no_path_since_, last_attempt_, buried_since_;
   std::vector<GridPoint> avoided_;

@@ -8,7 +8,7 @@
 
 namespace desert_sim {
 
-std::string Navigator::places(Place& start, Place& goal) const {
+std::string Navigator::places(Place& start, Place& goal, bool later) const {
   const auto near = [&](double x, double y, double distance) {
     return grid_->nearest_passable({x, y}, std::max(distance, grid_->frame().cell_size / 2));
   };
@@ -23,7 +23,8 @@ std::string Navigator::places(Place& start, Place& goal) const {
   if (!s)
     return "the start " + point_text(pose_.x, pose_.y) + " is not passable, nor is any cell within " +
            number_text(parameters_.escape) + " m: " + why(pose_.x, pose_.y);
-  const auto g = near(goal_->x, goal_->y, parameters_.goal_tolerance);
+  auto g = near(goal_->x, goal_->y, parameters_.goal_tolerance);
+  if (!g && later) g = grid_->cell_at({goal_->x, goal_->y});
   if (!g)
     return "the goal " + point_text(goal_->x, goal_->y) + " is not passable: " + why(goal_->x, goal_->y);
   start = {grid_->centre(*s), *s};
@@ -41,6 +42,7 @@ std::string Navigator::need_of_path() {
   if (pursuit_.off_path() > parameters_.off_path)
     return "the rover is " + number_text(pursuit_.off_path()) + " m off the path";
   if (parameters_.planner == PlannerKind::forecast && new_forecast_) return renew_schedule();
+  if (to_shelter_ && !believes_forecast()) return "the forecast that told of no way is too old";
   if (!changed) return "";
   const auto cost = path_cost(*grid_, pursuit_.remaining(), free_start());
   if (!cost) {
@@ -106,8 +108,10 @@ std::string Navigator::plan() {
   last_attempt_ = now_;
   new_forecast_ = false;
   schedule_.clear();
+  to_shelter_ = false;
   Place start, goal;
-  std::string problem = places(start, goal);
+  std::string problem =
+      places(start, goal, parameters_.planner == PlannerKind::forecast && believes_forecast());
   if (!problem.empty()) return problem;
   GridPath path;
   switch (parameters_.planner) {
@@ -144,6 +148,10 @@ std::string Navigator::plan_by_ompl(const Place& start, const Place& goal, GridP
   return result.problem;
 }
 
+bool Navigator::believes_forecast() const {
+  return !forecast_.empty() && now_ - forecast_.front().made <= parameters_.forecast_age;
+}
+
 TimedCosts Navigator::timed_costs() {
   TimedCosts costs{{now_}, {std::make_shared<const CostGrid>(*grid_)}};
   status_.forecast_age = -1;
@@ -161,10 +169,14 @@ TimedCosts Navigator::timed_costs() {
 std::string Navigator::plan_by_forecast(const Place& start, const Place& goal, GridPath& path) {
   TimedPlanner planner(timed_costs(), {parameters_.forecast_speed, parameters_.forecast_slowing});
   schedule_ = planner.plan(start.cell, goal.cell);
+  to_shelter_ = schedule_.empty() && believes_forecast() && !planner.shelter().empty();
+  if (to_shelter_) schedule_ = planner.shelter();
   for (const TimedPoint& p : schedule_) path.push_back(p.point);
   if (!path.empty()) return "";
   // Who waits for a forecast that knows a way may be buried where it stands.
-  const std::string problem = plan_by_field(start, goal, path);
+  Place start_now, goal_now;
+  std::string problem = places(start_now, goal_now);
+  if (problem.empty()) problem = plan_by_field(start_now, goal_now, path);
   return problem.empty() ? "" : problem + ", and none with waiting as the forecast tells";
 }
 
@@ -186,14 +198,19 @@ std::vector<bool> Navigator::cells_of_path() const {
 std::string Navigator::renew_schedule() {
   new_forecast_ = false;
   Place start, goal;
-  if (!places(start, goal).empty()) return "the start or the goal is not passable any more";
+  if (!places(start, goal, believes_forecast()).empty())
+    return "the start or the goal is not passable any more";
   TimedPlanner planner(timed_costs(), {parameters_.forecast_speed, parameters_.forecast_slowing});
-  const std::vector<TimedPoint> kept = planner.plan(start.cell, goal.cell, cells_of_path()),
-                                best = planner.plan(start.cell, goal.cell);
+  std::vector<TimedPoint> kept = planner.plan(start.cell, goal.cell, cells_of_path());
+  if (to_shelter_ && kept.empty()) kept = planner.shelter();
+  const std::vector<TimedPoint> best = planner.plan(start.cell, goal.cell);
+  if (to_shelter_ && !best.empty()) return "a way leads to the goal again as the forecast tells";
   if (kept.empty()) return "the path is blocked by what the forecast tells";
-  const double gained = kept.back().arrival - best.back().arrival;
-  if (gained > parameters_.replan_gain * (kept.back().arrival - now_) + 5)
-    return "another path arrives " + number_text(gained) + " s earlier, as the forecast tells";
+  if (!to_shelter_) {
+    const double gained = kept.back().arrival - best.back().arrival;
+    if (gained > parameters_.replan_gain * (kept.back().arrival - now_) + 5)
+      return "another path arrives " + number_text(gained) + " s earlier, as the forecast tells";
+  }
   schedule_ = kept;
   GridPath path;
   for (const TimedPoint& p : kept) path.push_back(p.point);
@@ -202,7 +219,7 @@ std::string Navigator::renew_schedule() {
 }
 
 void Navigator::take(GridPath path, const Place& goal) {
-  if (grid_->cell_at({goal_->x, goal_->y}) == goal.cell) path.back() = {goal_->x, goal_->y};
+  if (!to_shelter_ && grid_->cell_at({goal_->x, goal_->y}) == goal.cell) path.back() = {goal_->x, goal_->y};
   cost_left_.assign(path.size(), 0);
   for (std::size_t n = path.size() - 1; n > 0; --n)
     cost_left_[n - 1] = cost_left_[n] + line_cost(*grid_, path[n - 1], path[n], free_start()).value_or(0);

@@ -1,4 +1,4 @@
-// Navigating through forecasts: waiting, and what another forecast changes.
+// Navigating through forecasts: waiting, taking shelter, and what another forecast changes.
 #include <algorithm>
 #include <cmath>
 
@@ -55,10 +55,7 @@ class BeforeAFlood : public test::Navigating {
     return p;
   }
   static float rock(int x, int y) { return x > 44 && x < 54 && y >= 30 && y < 54 ? 0.0F : 1.0F; }
-  static float flood(int x, int y) {
-    const bool island = x >= 66 && x < 74 && y >= 6 && y < 14;
-    return y < 30 && !island ? 0.0F : rock(x, y);
-  }
+  static float flood(int x, int y) { return y < 30 ? 0.0F : rock(x, y); }
   static ForecastCosts forecast(double made, const std::vector<double>& times,
                                 const test::Traversability& before = rock,
                                 const test::Traversability& then = flood) {
@@ -119,6 +116,44 @@ TEST_F(BeforeAFlood, WhatAForecastTellsOfLaterTimesHoldsUntilItIsTooOld) {
   forgetful.set_forecast(forecast(5, {40}));
   act(5);
   EXPECT_LT(northernmost(forgetful), 21);
+}
+
+TEST_F(BeforeAFlood, WhereNoWayLeadsToTheGoalItWaitsWhereItCanStay) {
+  rover_.pose = {5, 10, 0};
+  go(35.2, 5.2);  // in the channel, 32 m away
+  while (time_ < 600 && navigator_.active()) {
+    ground(floods(time_) ? flood : rock);
+    navigator_.set_forecast(forecast(time_, {20, 40, 60, 80, 100, 120, 140, 160, 180, 200}));
+    run(10);
+    ASSERT_TRUE(!floods(time_) || stands_on(flood))
+        << time_ << " s: " << rover_.pose.x << ", " << rover_.pose.y;
+    if (time_ > 130) continue;
+    EXPECT_EQ(status().replans, 0) << status().last_replan;
+    EXPECT_GT(navigator_.path().back().y, 15) << "on the bank";
+  }
+  EXPECT_EQ(status().state, NavigatorState::arrived) << status().reason;
+  EXPECT_EQ(status().replans, 1);
+  EXPECT_NE(status().last_replan.find("a way leads to the goal again"), std::string::npos)
+      << status().last_replan;
+  EXPECT_GT(time_, 340);
+}
+
+/// A goal behind a wall, and a flood that leaves an island.
+TEST_F(BeforeAFlood, ItStaysInItsShelterAndGivesUpWhereNoWayLeadsToTheGoalNowEither) {
+  const auto wall = [](int x, int) { return x == 8 ? 0.0F : 1.0F; };
+  const auto island = [](int x, int y) { return x >= 20 && x < 25 && y >= 22 && y < 27 ? 1.0F : 0.0F; };
+  ground(wall);
+  rover_.pose = {6, 12, 0};
+  go(2, 12);
+  navigator_.set_forecast(forecast(time_, {20, 40, 60, 80, 100, 120}, wall, island));
+  run(40);
+  EXPECT_EQ(status().state, NavigatorState::waiting);
+  EXPECT_NE(status().reason.find("no way leads"), std::string::npos) << status().reason;
+  EXPECT_TRUE(stands_on(island)) << rover_.pose.x << ", " << rover_.pose.y;
+  EXPECT_EQ(run(30), NavigatorState::waiting);
+  EXPECT_EQ(run(40), NavigatorState::no_path);
+  EXPECT_NE(status().reason.find("none with waiting"), std::string::npos) << status().reason;
+  EXPECT_TRUE(stands_on(island));
 }
 
 TEST_F(NavigatingByForecast, RefusesForecastsWhoseTimesDoNotRise) {
