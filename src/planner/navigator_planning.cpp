@@ -48,10 +48,10 @@ std::string Navigator::need_of_path() {
   if (!cost) {
     // What is blocked now may be free when the rover comes there.
     if (schedule_.empty()) return "the path is blocked";
-    GridPath near;
-    for (const GridPoint& p : pursuit_.remaining()) {
-      near.push_back(p);
-      if (path_length(near) > 5) break;
+    GridPath near;  // no further than to where it waits
+    for (const TimedPoint& p : schedule()) {
+      near.push_back(p.point);
+      if (path_length(near) > 5 || p.departure > std::max(now_, p.arrival + 1)) break;
     }
     return path_cost(*grid_, near, free_start()) ? "" : "the path is blocked";
   }

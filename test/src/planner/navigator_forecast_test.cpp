@@ -119,13 +119,19 @@ TEST_F(BeforeAFlood, WhatAForecastTellsOfLaterTimesHoldsUntilItIsTooOld) {
 }
 
 TEST_F(BeforeAFlood, WhereNoWayLeadsToTheGoalItWaitsWhereItCanStay) {
+  const auto bank = [](int, int y) { return y < 30 ? 0.0F : 1.0F; };
   rover_.pose = {5, 10, 0};
   go(35.2, 5.2);  // in the channel, 32 m away
   while (time_ < 600 && navigator_.active()) {
-    ground(floods(time_) ? flood : rock);
     navigator_.set_forecast(forecast(time_, {20, 40, 60, 80, 100, 120, 140, 160, 180, 200}));
-    run(10);
-    ASSERT_TRUE(!floods(time_) || stands_on(flood))
+    for (int n = 0; n < 10; ++n) {
+      const float far_off = n % 2 == 0 ? 0.3F : 1.0F;
+      ground([&](int x, int y) {
+        return x == 1 && y == 58 ? far_off : floods(time_) ? flood(x, y) : rock(x, y);
+      });
+      run(1);
+    }
+    ASSERT_TRUE(!floods(time_) || stands_on(bank))
         << time_ << " s: " << rover_.pose.x << ", " << rover_.pose.y;
     if (time_ > 130) continue;
     EXPECT_EQ(status().replans, 0) << status().last_replan;
