@@ -55,10 +55,14 @@ TEST_P(FullCells, ASeaAroundDeepGroundFlowsIn) {
 
 /// The datum is half way up: water is deeper than walls are high above it.
 TEST_P(FullCells, ASeaThatIsAsDeepAsTheTerrainIsHigh) {
+  const std::string low_sand =
+      "grid: {width: 24, height: 16, cell_size: 1, boundary: open}\n"
+      "terrain: [{uniform: {layer: bedrock, value: -10}}, {uniform: {layer: sand, value: 1}}]\n";
   for (const std::string level : {"1000", "1e6"}) {
     const auto s = filled(
-        open_sand +
+        low_sand +
             "wind: {speed: 3}\nwater: {enabled: true, sea: border, wave_strength: 0.1, most_substeps: 256, "
+            "springs: [{x: 12, y: 8, radius: 6, discharge: 100000}], "
             "sea_level: " +
             level + "}\n",
         60);
