@@ -16,10 +16,11 @@ inline bool children_share_tiles(const Grid& g) {
 
 /// Passes over a level: those numbered `first` to `last` − 1 in this step, with at least `sweeps` sweeps
 /// each. `share`, `continue_threshold` and `edge_factor` are as in Schedule; `edge_factor` applies to the
-/// last of these passes.
+/// last of these passes. `by_gradient`: by quads.hpp.
 struct Passes {
   int first, last, sweeps;
   float share, continue_threshold, edge_factor;
+  bool by_gradient;
 };
 
 /// Relaxes one level, after prolonging the change of the next coarser one to it. `then` is the law that
@@ -35,7 +36,8 @@ void relax(E& exec, const LevelView& level, Prolong from_coarse, const Passes& p
     const Tiles tiles{level.grid, seam_offset(step_count, pass)};
     const bool is_last = pass + 1 == p.last;
     const GapOmega share{p.share, is_last ? p.share * p.edge_factor : p.share};
-    const RelaxTile law{tiles, level, from_coarse, share, p.sweeps, p.continue_threshold};
+    const RelaxTile law{tiles,   level,        from_coarse, share, p.sweeps, p.continue_threshold,
+                        nullptr, p.by_gradient};
     if (is_last)
       relax_tiles(exec, law, then);
     else
@@ -79,7 +81,8 @@ void cycle(E& exec, const LevelView& fine, const AvalanchingParameters& p, const
   view_levels(coarse, views.data());
   constexpr float never = 1e6f;
   const float share = plan.share * p.transfer, coarse_share = plan.coarse_share * p.transfer;
-  const Passes before{0, 1, plan.first_sweeps, share, never, 1.0f};
+  const bool by_gradient = p.scheme == AvalancheScheme::gradient;
+  const Passes before{0, 1, plan.first_sweeps, share, never, 1.0f, by_gradient};
   if (coarse.empty())
     relax(exec, fine, Prolong{}, before, step_count, NoFollowUp{});
   else
@@ -92,19 +95,23 @@ void cycle(E& exec, const LevelView& fine, const AvalanchingParameters& p, const
   for (std::size_t n = coarse.size(); n > 0; --n) {
     const int passes = plan.coarse_passes(n);
     relax(exec, views[n], change,
-          {0, passes, plan.coarse_sweeps / passes, coarse_share, plan.continue_threshold, 1.0f}, step_count,
-          NoFollowUp{});
+          {0, passes, plan.coarse_sweeps / passes, coarse_share, plan.continue_threshold, 1.0f, by_gradient},
+          step_count, NoFollowUp{});
     const Level& done = coarse[n - 1];
     change = {done.grid, done.sand.data(), done.sand_before.data(), views[n - 1].grid, views[n - 1].sand};
   }
   relax(exec, fine, change,
-        {1, plan.fine_passes(), plan.last_sweeps, share, plan.continue_threshold, plan.last_edge_factor},
+        {1, plan.fine_passes(), plan.last_sweeps, share, plan.continue_threshold, plan.last_edge_factor,
+         by_gradient},
         step_count, then);
 }
 
-/// In rounds the whole excess slides (ω = 1). Mostly chains of small slides are left after a cycle, and what
-/// a pair keeps back of one has to be passed on in later sweeps, which is what takes time.
-constexpr float omega_in_rounds = 1.0f;
+/// In rounds the whole excess slides (ω = 1), or what the law by the gradient may move at most. Mostly chains
+/// of small slides are left after a cycle, and what a pair keeps back of one has to be passed on in later
+/// sweeps, which is what takes time.
+constexpr float omega_in_rounds(AvalancheScheme scheme) {
+  return scheme == AvalancheScheme::gradient ? 0.75f : 1.0f;
+}
 
 /// Upper bound of sweeps per pass in a round; tiles that come to rest stop sooner.
 constexpr int max_sweeps_in_rounds = 32;
@@ -112,13 +119,14 @@ constexpr int max_sweeps_in_rounds = 32;
 /// Finds the blocks with cells that are too steep, and activates the tiles around them for the next round.
 /// The whole grid is checked, or after a round only the blocks around the tiles that it has relaxed.
 template <class E>
-void update_active_tiles(E& exec, const LevelView& fine, float tolerance, const ActiveTileFlags& round,
-                         bool after_round, const ActiveTiles& active) {
+void update_active_tiles(E& exec, const LevelView& fine, const AvalanchingParameters& p,
+                         const ActiveTileFlags& round, bool after_round, const ActiveTiles& active) {
   const Grid blocks = Blocks{fine.grid}.cells();
   Quanta* const blocks_to_check = after_round ? active.blocks_to_check.data() : nullptr;
   if (after_round) for_each_cell(exec, blocks, MarkNeighbours{round, blocks_to_check});
   exec.set_zero(active.check_buffer.data(), active.check_buffer.bytes());
-  const FindSteep find{{fine, tolerance}, blocks_to_check, active.steep()};
+  const FindSteep find{
+      {fine, p.tolerance}, blocks_to_check, active.steep(), p.scheme == AvalancheScheme::gradient};
   for_each_cell(exec, find.squares(), find);
   for_each_cell(exec, blocks, ActivateTiles{active.steep(), round, active.steep_counter()});
 }
@@ -132,7 +140,7 @@ void relax_until_converged(E& exec, const LevelView& fine, const AvalanchingPara
                            std::uint64_t step_count, Workspace& work) {
   using After = CheckConvergence::After;
   const Schedule plan = schedule(p, fine.grid);
-  const float share = omega_in_rounds * p.transfer;
+  const float share = omega_in_rounds(p.scheme) * p.transfer;
   const ActiveTiles& active = work.active_tiles;
   Progress* const progress = active.progress.data();
   const auto check = [&](After after, int sweeps) {
@@ -143,7 +151,7 @@ void relax_until_converged(E& exec, const LevelView& fine, const AvalanchingPara
     ActiveTileFlags round{fine.grid, {}, active.flags(), active.max_tiles};
     for (int n = 0; n < passes_per_round; ++n) round.offsets[n] = seam_offset(seams, plan.fine_passes() + n);
     cycle(exec, fine, p, plan, seams, work, NoFollowUp{});
-    update_active_tiles(exec, fine, p.tolerance, round, false, active);
+    update_active_tiles(exec, fine, p, round, false, active);
     check(what, plan.fine_sweeps());
     exec.repeat_while(&progress->more_rounds, [&] {
       for (int n = 0; n < passes_per_round; ++n)
@@ -154,9 +162,10 @@ void relax_until_converged(E& exec, const LevelView& fine, const AvalanchingPara
                               {share, share},
                               max_sweeps_in_rounds,
                               0.0f,
-                              round.flags_of_pass(n)},
+                              round.flags_of_pass(n),
+                              p.scheme == AvalancheScheme::gradient},
                     NoFollowUp{});
-      update_active_tiles(exec, fine, p.tolerance, round, true, active);
+      update_active_tiles(exec, fine, p, round, true, active);
       check(After::round, passes_per_round * max_sweeps_in_rounds);
     });
   };
@@ -194,7 +203,7 @@ void step(E& exec, const TerrainView& t, const AvalanchingParameters& p, std::ui
   const LevelView fine = finest_level(t, repose);
   const bool converge = p.quality == AvalancheQuality::converged;
   work.iterations = 0;
-  if (p.scheme == AvalancheScheme::multilevel && !converge) {
+  if (has_levels(p.scheme) && !converge) {
     const Schedule plan = schedule(p, t.grid);
     if (heights)
       cycle(exec, fine, p, plan, tick, work, surface::make_heights_law(t, *heights));
@@ -203,7 +212,7 @@ void step(E& exec, const TerrainView& t, const AvalanchingParameters& p, std::ui
     work.iterations = plan.fine_sweeps();
     return;
   }
-  if (p.scheme == AvalancheScheme::multilevel)
+  if (has_levels(p.scheme))
     relax_until_converged(exec, fine, p, tick, work);
   else
     sweep_all(exec, fine, p, work);

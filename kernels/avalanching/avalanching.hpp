@@ -18,6 +18,9 @@
 ///                   coarsest to the finest, is relaxed, and its change prolonged to the four children of
 ///                   each cell. With quality `converged` more passes follow until the tolerance is met, which
 ///                   can be as low as 2e-4 (relax_until_converged()).
+///   gradient        The same cycle with one law for slopes of every aspect: sand slides where the gradient,
+///                   and not one of eight drops, exceeds the angle of repose (quads.hpp). Cones are round,
+///                   and slip faces have no planes.
 ///   sweeps          Synchronous sweeps (Jacobi) of the whole grid by the equations above; the reference.
 ///   taylor_keyser   Synchronous sweeps that release ¼ k_c of the largest drop, distributed by tangents; for
 ///                   comparison.
@@ -34,7 +37,7 @@
 ///    +-- sweep_all()  schemes `sweeps`, `taylor_keyser`
 ///    |     laws.hpp          Release, Gather, ApplySweep: one synchronous sweep; Excess: what is left
 ///    |
-///    +-- cycle()      scheme `multilevel`
+///    +-- cycle()      schemes `multilevel` and `gradient`
 ///    |     |
 ///    |     |   fine grid       relax               relax     then surface::ComputeBlockHeights
 ///    |     |                      \             /
@@ -46,6 +49,7 @@
 ///    |      +-- CPU: tile.hpp        RelaxTile: one closed tile of 32 × 32 cells, the reference
 ///    |      |        tile_units.hpp  Units: heights as floats that count whole units
 ///    |      |        patch.hpp       PairsOfPatches: the pairs of 4 × 4 cells, in the order of relaxation
+///    |      |        quads.hpp       QuadsOfPatches: in place of pairs, for scheme `gradient`
 ///    |      |
 ///    |      +-- GPU: tuned/          the same arithmetic in hand-written kernels
 ///    |               tile.cu         the kernel: one tile a thread block, one patch a thread

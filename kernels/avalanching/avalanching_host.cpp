@@ -46,7 +46,7 @@ Schedule schedule(const AvalanchingParameters& p, const Grid& grid) {
 Workspace make_workspace(Exec& exec, const Grid& grid, const AvalanchingParameters& p) {
   Workspace work;
   const std::size_t cells = static_cast<std::size_t>(grid.cells());
-  if (p.scheme != AvalancheScheme::multilevel) {
+  if (!has_levels(p.scheme)) {
     work.share = Buffer<float>(exec, cells);
     work.given = Buffer<Quanta>(exec, cells);
     work.received = Buffer<Quanta>(exec, cells);

@@ -5,8 +5,12 @@
 
 namespace desert_sim {
 
-enum class AvalancheScheme : int { multilevel, sweeps, taylor_keyser };
-constexpr const char* avalanche_schemes[] = {"multilevel", "sweeps", "taylor_keyser"};
+enum class AvalancheScheme : int { multilevel, gradient, sweeps, taylor_keyser };
+constexpr const char* avalanche_schemes[] = {"multilevel", "gradient", "sweeps", "taylor_keyser"};
+/// Whether a scheme is a multigrid cycle, in place of sweeps over the whole grid.
+constexpr bool has_levels(AvalancheScheme s) {
+  return s == AvalancheScheme::multilevel || s == AvalancheScheme::gradient;
+}
 enum class AvalancheQuality : int { fast, good, converged };
 constexpr const char* avalanche_qualities[] = {"fast", "good", "converged"};
 
@@ -29,7 +33,9 @@ constexpr auto parameter_table(const AvalanchingParameters*) {
   using P = AvalanchingParameters;
   return std::make_tuple(
       parameter("enabled", &P::enabled, "Whether steep sand slides."),
-      parameter("scheme", &P::scheme, avalanche_schemes, "How slides are computed."),
+      parameter("scheme", &P::scheme, avalanche_schemes,
+                "How slides are computed: by eight neighbours (multilevel; sweeps and taylor_keyser for "
+                "comparison), or by the gradient, alike in every direction."),
       parameter("quality", &P::quality, avalanche_qualities,
                 "fast: few sweeps, good: more, and most of all on small grids; both more where much slides; "
                 "converged: until tolerance (also for sweeps)."),

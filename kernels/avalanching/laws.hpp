@@ -2,6 +2,7 @@
 /// Laws of avalanching: synchronous sweeps cell by cell, and the transfer between levels (restriction and
 /// prolongation). Equations and schemes are in avalanching.hpp.
 
+#include "kernels/avalanching/quads.hpp"
 #include "kernels/backend/for_each.hpp"
 #include "kernels/backend/vec4.hpp"
 #include "kernels/base/math.hpp"
@@ -314,6 +315,54 @@ struct Excess {
       largest = maximum(largest, over / (Neighbours::distance(k) * level.quanta_per_cell));
     }
     return largest;
+  }
+};
+
+/// The same for scheme `gradient`: the largest slide, as a tangent, that is left in the quad whose south-west
+/// cell is (x, y), or along its straight pairs if one of its cells is a wall.
+struct QuadExcess {
+  LevelView level;
+
+  DESERT_HD float operator()(int x, int y) const {
+    const Grid& g = level.grid;
+    int cell[4];
+    bool walls = false;
+    for (int n = 0; n < 4; ++n) {
+      cell[n] = neighbour_index(g, x + n % 2, y + n / 2);
+      walls = walls || cell[n] < 0 || level.wall(cell[n]);
+    }
+    return (walls ? of_straight_pairs(cell) : of_quad(cell)) / level.quanta_per_cell;
+  }
+
+ private:
+  DESERT_HD float of_quad(const int (&cell)[4]) const {
+    Quanta h[4];
+    float sand[4], repose = 0.0f;
+    for (int n = 0; n < 4; ++n) {
+      h[n] = level.height(cell[n]);
+      sand[n] = static_cast<float>(level.sand[cell[n]]);
+      repose += 0.25f * level.repose[cell[n]];
+    }
+    const auto drop = [&](int from, int to) { return static_cast<float>(h[from] - h[to]); };
+    const Quad quad{drop(0, 3), drop(1, 2), drop(0, 1) - drop(2, 3), sand[0], sand[1], sand[2], sand[3]};
+    const QuadSlides slides = QuadSlides::of<false>(quad, repose * level.quanta_per_cell);
+    const float p = minimum(fabsf(slides.p), slides.p > 0.0f ? sand[0] : sand[3]),
+                q = minimum(fabsf(slides.q), slides.q > 0.0f ? sand[1] : sand[2]),
+                t = minimum(fabsf(slides.t),
+                            slides.t > 0.0f ? minimum(sand[0], sand[3]) : minimum(sand[1], sand[2]));
+    return maximum(maximum(p, q), t);
+  }
+  DESERT_HD float of_straight_pairs(const int (&cell)[4]) const {
+    return maximum(maximum(of_pair(cell[0], cell[1]), of_pair(cell[2], cell[3])),
+                   maximum(of_pair(cell[0], cell[2]), of_pair(cell[1], cell[3])));
+  }
+  DESERT_HD float of_pair(int i, int j) const {
+    if (i < 0 || j < 0 || level.wall(i) || level.wall(j)) return 0.0f;
+    const Quanta h_i = level.height(i), h_j = level.height(j);
+    const int donor = h_i > h_j ? i : j;
+    const float over =
+        excess(h_i > h_j ? h_i : h_j, h_i > h_j ? h_j : h_i, level.repose[donor] * level.quanta_per_cell);
+    return minimum(over, static_cast<float>(level.sand[donor]));
   }
 };
 

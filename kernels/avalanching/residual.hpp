@@ -1,6 +1,7 @@
 #pragma once
 /// How much too steep the sand is that avalanching has left.
 
+#include "kernels/avalanching/avalanching_parameters.hpp"
 #include "kernels/backend/exec.hpp"
 #include "kernels/field/layers.hpp"
 
@@ -15,10 +16,11 @@ struct Residual {
 
 namespace statistics {
 
-/// `repose`: tangents of the angles of repose in the last step. Reads results back and so waits for the
+/// `repose`: tangents of the angles of repose in the last step. Scheme `gradient` counts quads in place of
+/// cells (QuadExcess), all others cells by their neighbours (Excess). Reads results back and so waits for the
 /// device; it is no part of a step.
 template <class E>
-Residual residual(E& exec, const TerrainView& t, const float* repose);
+Residual residual(E& exec, const TerrainView& t, const float* repose, AvalancheScheme scheme);
 
 }  // namespace statistics
 }  // namespace desert_sim

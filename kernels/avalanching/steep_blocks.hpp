@@ -55,6 +55,7 @@ struct FindSteep {
   TooSteep too_steep;
   const Quanta* blocks_to_check;  ///< flags of the blocks to check; null: all
   Quanta* steep;                  ///< flags of the blocks, all 0 before
+  bool by_gradient = false;       ///< by quads, each of which counts where its south-west cell lies
 
   DESERT_HD Grid squares() const {
     const Grid& g = too_steep.level.grid;
@@ -64,8 +65,10 @@ struct FindSteep {
     const Grid& g = too_steep.level.grid;
     const int west = side * column, south = side * row, block = Blocks{g}.of_cell(west, south);
     if (blocks_to_check && blocks_to_check[block] == 0) return;
-    if (g.width % side == 0 ? is_any_too_steep_by_fours(west, south) : is_any_too_steep(west, south))
-      set_flag(&steep[block]);
+    const bool found = by_gradient           ? is_any_quad_too_steep(west, south)
+                       : g.width % side == 0 ? is_any_too_steep_by_fours(west, south)
+                                             : is_any_too_steep(west, south);
+    if (found) set_flag(&steep[block]);
   }
 
  private:
@@ -109,6 +112,14 @@ struct FindSteep {
     for (int y = south; y < south + side && y < g.height; ++y)
       for (int x = west; x < west + side && x < g.width; ++x)
         if (too_steep(x, y)) return true;
+    return false;
+  }
+  DESERT_HD bool is_any_quad_too_steep(int west, int south) const {
+    const Grid& g = too_steep.level.grid;
+    const QuadExcess excess{too_steep.level};
+    for (int y = south; y < south + side && y < g.height; ++y)
+      for (int x = west; x < west + side && x < g.width; ++x)
+        if (excess(x, y) > too_steep.tolerance) return true;
     return false;
   }
   /// The same for grids whose width is a multiple of four, with loads of four values at a time.

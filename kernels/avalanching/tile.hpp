@@ -4,9 +4,9 @@
 /// stand in a tile as walls: too high to receive sand, and with an angle of repose so steep that they give
 /// none.
 ///
-/// A sweep relaxes the pairs of all patches of 4 × 4 cells in the tile (patch.hpp). From sweep to sweep the
-/// patches shift by one cell to the east and to the south, so that over four sweeps all cells are treated
-/// alike:
+/// A sweep relaxes the pairs (patch.hpp) or quads (quads.hpp) of all patches of 4 × 4 cells in the tile. From
+/// sweep to sweep the patches shift by one cell to the east and to the south, so that over four sweeps all
+/// cells are treated alike:
 ///
 ///        . . . . . .
 ///        . 0 . . . .     a corner of the patches in sweeps 0, 1, 2, 3, after which
@@ -29,6 +29,7 @@
 
 #include "kernels/avalanching/laws.hpp"
 #include "kernels/avalanching/patch.hpp"
+#include "kernels/avalanching/quads.hpp"
 #include "kernels/avalanching/tile_units.hpp"
 #include "kernels/field/surface.hpp"
 
@@ -48,6 +49,8 @@ struct PatchShift {
       : x(n & (Patch::side - 1)), y((Patch::side - x) & (Patch::side - 1)) {
     static_assert(Patch::side == 4);
   }
+  /// Whether quads are relaxed in transposed order (quads.hpp): in every other sweep.
+  DESERT_HD bool transposes_quads() const { return x % 2 != 0; }
 };
 
 /// The share ω of an excess that slides across the nth gap between columns, or between rows, of a tile. Gap n
@@ -93,6 +96,7 @@ struct RelaxTile {
   int sweeps;
   float continue_threshold;              ///< [cell sizes]
   const Quanta* active_flags = nullptr;  ///< flags, 0 for tiles to skip; null: relax all
+  bool by_gradient = false;              ///< quads in place of pairs
 
   DESERT_HD bool is_skipped(int column, int row) const {
     return active_flags && active_flags[row * tiles.columns() + column] == 0;
@@ -138,11 +142,16 @@ struct RelaxTile {
     if (range.lowest >= wall_height) return;
     const Units units(range.lowest, range.highest, level.quanta_per_cell);
     load(team, column, row, units, h, ground, drop, base);
-    if (units.height(range.highest) - Units::floor <= least(team, drop)) return;
+    // √3 is the most by which the gradient of a quad exceeds its relief.
+    const float steepest = (units.height(range.highest) - Units::floor) * (by_gradient ? 1.7320509f : 1.0f);
+    if (steepest <= least(team, drop)) return;
     const float threshold = units.drop(continue_threshold, level.quanta_per_cell);
     const bool moved = relax([&](int, const PatchShift& shift) DESERT_INLINE {
-      const float max_moved = range.deep() ? sweep<true>(team, shift, h, ground, drop)
-                                           : sweep<false>(team, shift, h, ground, drop);
+      const float max_moved = by_gradient
+                                  ? (range.deep() ? sweep<true, true>(team, shift, h, ground, drop)
+                                                  : sweep<false, true>(team, shift, h, ground, drop))
+                                  : (range.deep() ? sweep<true, false>(team, shift, h, ground, drop)
+                                                  : sweep<false, false>(team, shift, h, ground, drop));
       return max_moved > threshold ? Moved::much : (max_moved > 0.0f ? Moved::little : Moved::nothing);
     });
     if (moved) store(team, column, row, units, h, base);
@@ -185,14 +194,16 @@ struct RelaxTile {
   struct At {
     PatchShift shift;
     int patch_row, first;
-    DESERT_HD int operator()(int row, int column) const {
+    bool transposed;  ///< `row` and `column` are exchanged
+    DESERT_HD int operator()(int patch_y, int patch_x) const {
+      const int row = transposed ? patch_x : patch_y, column = transposed ? patch_y : patch_x;
       const int y = (patch_row * Patch::side + shift.y + row) % side, x = shift.x + column;
       return local(y, first + x / Patch::side, x % Patch::side);
     }
   };
 
-  /// One sweep over all pairs. Returns the largest amount that a pair has moved.
-  template <bool deep, class Team>
+  /// One sweep over all pairs, or quads. Returns the largest amount that one has moved.
+  template <bool deep, bool quads, class Team>
   DESERT_HD float sweep(const Team& team, const PatchShift& shift, float* h, const float* ground,
                         const float* drop) const {
     const GapOmega omega = share;
@@ -205,15 +216,20 @@ struct RelaxTile {
     const float max_moved = team.max_of(patches * patches / Team::patch_lanes, [=](int i) DESERT_INLINE {
       constexpr int lanes = Team::patch_lanes, vectors = patches / lanes;
       const int patch_row = i / vectors, first = i % vectors * lanes;
+      const bool transposed = quads && shift.transposes_quads();
+      const At at{shift, patch_row, first, transposed};
       Shares<lanes> shares;
       float max_moved_by_patch[lanes] = {};
       for (int k = 0; k + 1 < Patch::side; ++k) {
         shares.y[k] = omega(patch_row * Patch::side + shift.y + k);
         for (int n = 0; n < lanes; ++n) shares.x[k][n] = omega((first + n) * Patch::side + shift.x + k);
       }
-      PairsOfPatches<lanes, deep, At>{
-          h, ground, drop, At{shift, patch_row, first}, shares, max_moved_by_patch}
-          .relax();
+      if constexpr (quads)
+        QuadsOfPatches<lanes, deep, At>{
+            h, ground, drop, at, QuadShares<lanes>(shares, transposed), max_moved_by_patch}
+            .relax();
+      else
+        PairsOfPatches<lanes, deep, At>{h, ground, drop, at, shares, max_moved_by_patch}.relax();
       float max_moved_here = 0.0f;
       for (int n = 0; n < lanes; ++n) max_moved_here = fast_max(max_moved_here, max_moved_by_patch[n]);
       return max_moved_here;

@@ -36,6 +36,24 @@ MUTATIONS = [Mutation(*row) for row in (
      "static_cast<std::uint32_t>(turns) * 0x9e3779b9u};", "static_cast<std::uint32_t>(turns) * 0u};",
      "a regular die turns on, so that flows add up", "kernels_unit Dice.ThatTurnRegularly*"),
 
+    # ---- avalanches by the gradient
+    ("quads_in_one_order", "kernels/avalanching/tile.hpp",
+     "return x % 2 != 0; }", "return x > 4; }",
+     "quads slide as fast along one axis as along the other", "kernels_unit *AvalanchingTile.OfLooseSand*"),
+    ("quads_by_the_least_repose", "kernels/avalanching/quads.hpp",
+     "0.25f * ((drop_a[n] + drop_b[n]) + (drop_c[n] + drop_d[n]));",
+     "fast_min(fast_min(drop_a[n], drop_b[n]), fast_min(drop_c[n], drop_d[n]));",
+     "a quad slides by the mean of its four angles", "kernels_unit *AvalanchingTile.OfAQuadSlidesByTheMean*"),
+    ("quads_without_twist_in_g", "kernels/avalanching/quads.hpp",
+     "over(fused(p, p, fused(q, q, t * t)), drop)", "over(fused(p, p, q * q), drop)",
+     "the twist counts in the gradient", "kernels_unit *AvalanchingTile.OfASpike*"),
+    ("quads_slide_over_bare_rock", "kernels/avalanching/quads.hpp",
+     "p_slides = fast_min(fabsf(p), p_sand)", "p_slides = fabsf(p) + 0.0f * p_sand",
+     "drops without sand do not count in the gradient", "kernels_unit *AvalanchingTile.BesideAStepOfRock*"),
+    ("walls_stop_all_of_a_quad", "kernels/avalanching/quads.hpp",
+     "relax_straight_pair(a + n, c + n, share[n], n), ", "",
+     "beside a wall sand slides along straight pairs", "kernels_unit *AvalanchingTile.AlongAWall*"),
+
     # ---- particles
     ("particles_see_no_shelter", "kernels/particles/flight.hpp",
      "const float z = height - shelter,", "const float z = height - 0.0f * shelter,",

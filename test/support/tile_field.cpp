@@ -86,7 +86,8 @@ std::vector<Quanta> TileField::relaxed(Exec& exec, int offset, int sweeps, bool 
                                    {share, edge_factor * share},
                                    sweeps,
                                    continue_threshold,
-                                   or_null(device_flags, active_flags)};
+                                   or_null(device_flags, active_flags),
+                                   by_gradient};
   with_backend(exec, [&](auto& e) {
     by_law ? avalanching::relax_tiles_reference(e, law)
            : avalanching::relax_tiles(e, law, avalanching::NoFollowUp{});
@@ -95,7 +96,7 @@ std::vector<Quanta> TileField::relaxed(Exec& exec, int offset, int sweeps, bool 
 }
 
 avalanching::RelaxTile TileField::four_sweeps(DeviceField& device, int offset) const {
-  return {{grid, offset}, device.level, {}, {0.65f, 0.4f}, 4, 0.2f};
+  return {{grid, offset}, device.level, {}, {0.65f, 0.4f}, 4, 0.2f, nullptr, by_gradient};
 }
 
 std::vector<std::uint32_t> TileField::relaxed_and_restricted(Exec& exec, int offset) const {

@@ -31,8 +31,8 @@ struct InRegisters {
   __device__ constexpr int operator()(int row, int column) const { return row * Patch::side + column; }
 };
 
-/// Relaxes the pairs of this thread's patch. Returns the largest amount that one of them moves.
-template <bool deep>
+/// Relaxes the pairs, or quads, of this thread's patch. Returns the largest amount that one of them moves.
+template <bool deep, bool quads>
 __device__ __forceinline__ float sweep_patch(Shared& shared, const PatchShift& shift) {
   constexpr unsigned bytes = sizeof(float), row_bytes = PerCell::stride * bytes;
   const unsigned px = threadIdx.x % patches, py = threadIdx.x / patches;
@@ -44,6 +44,13 @@ __device__ __forceinline__ float sweep_patch(Shared& shared, const PatchShift& s
     columns[n] = x % Patch::side * (side * row_bytes) + (x < Patch::side ? px : next_x) * bytes;
     rows[n] = y % Patch::side * row_bytes + (y < Patch::side ? py : next_y) * (Patch::side * row_bytes);
   }
+  const bool transposed = quads && shift.transposes_quads();  // the patch lies so in the registers
+#pragma unroll
+  for (int n = 0; n < Patch::side; ++n)
+    if (transposed) {
+      const unsigned row = rows[n];
+      rows[n] = columns[n], columns[n] = row;
+    }
   const auto at = [&](PerCell& values, int n) -> float& {
     char* const first = reinterpret_cast<char*>(values.values);
     return *reinterpret_cast<float*>(first + (rows[n / Patch::side] + columns[n % Patch::side]));
@@ -62,7 +69,10 @@ __device__ __forceinline__ float sweep_patch(Shared& shared, const PatchShift& s
     shares.y[n] = shared.share[py * Patch::side + shift.y + n];
   }
   float max_moved = 0.0f;
-  PairsOfPatches<1, deep, InRegisters>{h, ground, drop, {}, shares, &max_moved}.relax();
+  if constexpr (quads)
+    QuadsOfPatches<1, deep, InRegisters>{h, ground, drop, {}, {shares, transposed}, &max_moved}.relax();
+  else
+    PairsOfPatches<1, deep, InRegisters>{h, ground, drop, {}, shares, &max_moved}.relax();
 #pragma unroll
   for (int n = 0; n < Patch::cells; ++n) at(shared.h, n) = h[n];
   return max_moved;
@@ -72,28 +82,28 @@ __device__ __forceinline__ float sweep_patch(Shared& shared, const PatchShift& s
 /// pays where tiles take many sweeps; with few, fetching the instructions takes longer than it saves.
 enum class ShiftCode { shared_by_shifts, one_per_shift };
 
-template <bool deep, ShiftCode code>
+template <bool deep, bool quads, ShiftCode code>
 __device__ float sweep_patch(Shared& shared, const PatchShift& shift) {
   static_assert(Patch::side == 4);
   if constexpr (code == ShiftCode::one_per_shift) switch (shift.x) {
       case 0:
-        return sweep_patch<deep>(shared, PatchShift(0));
+        return sweep_patch<deep, quads>(shared, PatchShift(0));
       case 1:
-        return sweep_patch<deep>(shared, PatchShift(1));
+        return sweep_patch<deep, quads>(shared, PatchShift(1));
       case 2:
-        return sweep_patch<deep>(shared, PatchShift(2));
+        return sweep_patch<deep, quads>(shared, PatchShift(2));
       default:
-        return sweep_patch<deep>(shared, PatchShift(3));
+        return sweep_patch<deep, quads>(shared, PatchShift(3));
     }
-  return sweep_patch<deep>(shared, shift);
+  return sweep_patch<deep, quads>(shared, shift);
 }
 
 /// Sweeps over the loaded tile until it is at rest or may stop. Returns whether anything moved.
-template <bool deep, ShiftCode code>
+template <bool deep, bool quads, ShiftCode code>
 __device__ bool relax(const RelaxTile& law, Shared& shared, const Units& units) {
   const float threshold = units.drop(law.continue_threshold, law.level.quanta_per_cell);
   return law.relax([&](int n, const PatchShift& shift) {
-    const float max_moved = sweep_patch<deep, code>(shared, shift);
+    const float max_moved = sweep_patch<deep, quads, code>(shared, shift);
     const bool any = __any_sync(0xffffffffu, max_moved > 0.0f),
                any_much = __any_sync(0xffffffffu, max_moved > threshold);
     if (threadIdx.x % 32 == 0) shared.moved[n % 2][threadIdx.x / 32] = any_much ? 2 : (any ? 1 : 0);

@@ -47,7 +47,7 @@ __device__ void apply_follow_up(const surface::ComputeBlockHeights& law, bool ob
   law.compute_complete_block(column, row, row_of);
 }
 
-template <bool patch_aligned, ShiftCode code, class Then>
+template <bool patch_aligned, bool quads, ShiftCode code, class Then>
 __global__ __launch_bounds__(threads, resident_tiles) void relax_tiles_kernel(RelaxTile law, Then then) {
   constexpr bool has_no_follow_up = std::is_same_v<Then, NoFollowUp>;
   if (law.is_skipped(static_cast<int>(blockIdx.x), static_cast<int>(blockIdx.y))) return;
@@ -61,7 +61,8 @@ __global__ __launch_bounds__(threads, resident_tiles) void relax_tiles_kernel(Re
   const Units units(range.lowest, range.highest, law.level.quanta_per_cell);
   bool changed = law.from_coarse.sand_after;
   if (range.lowest < wall_height)
-    changed |= range.deep() ? relax<true, code>(law, shared, units) : relax<false, code>(law, shared, units);
+    changed |= range.deep() ? relax<true, quads, code>(law, shared, units)
+                            : relax<false, quads, code>(law, shared, units);
   if (changed)
 #pragma unroll
     for (int row = 0; row < Patch::side; ++row)
@@ -82,7 +83,10 @@ bool patches_are_aligned(const RelaxTile& law) {
 template <bool patch_aligned, ShiftCode code, class Then>
 void launch_kernel(CudaExec& exec, const RelaxTile& law, const Then& then) {
   const dim3 tiles(law.tiles.columns(), law.tiles.rows());
-  relax_tiles_kernel<patch_aligned, code><<<tiles, threads, 0, cuda::stream(exec)>>>(law, then);
+  if (law.by_gradient)
+    relax_tiles_kernel<patch_aligned, true, code><<<tiles, threads, 0, cuda::stream(exec)>>>(law, then);
+  else
+    relax_tiles_kernel<patch_aligned, false, code><<<tiles, threads, 0, cuda::stream(exec)>>>(law, then);
   check_cuda(cudaGetLastError(), "launch over tiles, tuned");
 }
 void launch(CudaExec& exec, const RelaxTile& law) {

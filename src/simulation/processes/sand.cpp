@@ -177,8 +177,8 @@ void slide(StepContext& c, ProcessWorkspace* workspace) {
 /// Whether the host waits for nothing in a step of avalanching.
 bool avalanching_can_be_recorded(const SimulationState& state) {
   const AvalanchingParameters& p = state.scenario.get<AvalanchingParameters>();
-  const bool needs_no_readback = p.quality != AvalancheQuality::converged ||
-                                 (p.scheme == AvalancheScheme::multilevel && state.exec().can_record_loops());
+  const bool needs_no_readback =
+      p.quality != AvalancheQuality::converged || (has_levels(p.scheme) && state.exec().can_record_loops());
   return needs_no_readback && !is_loose(state);
 }
 

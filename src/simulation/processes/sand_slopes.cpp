@@ -10,7 +10,8 @@ namespace desert_sim {
 Residual sand_residual(const SimulationState& state, Pipeline& pipeline) {
   pipeline.refresh_derived();
   return with_backend(state.exec(), [&](auto& e) {
-    return statistics::residual(e, state.terrain.view(), pipeline.fields().repose.data());
+    return statistics::residual(e, state.terrain.view(), pipeline.fields().repose.data(),
+                                state.scenario.get<AvalanchingParameters>().scheme);
   });
 }
 

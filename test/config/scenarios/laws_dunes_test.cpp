@@ -64,58 +64,6 @@ INSTANTIATE_TEST_SUITE_P(Laws, TwoWinds,
                                            std::pair{135.0, 76.3}),
                          [](const auto& test) { return std::to_string(static_cast<int>(test.param.first)); });
 
-/// Mean place along the wind and greatest height of a heap of 8 m after 40 s of wind to `degrees`.
-struct Moved {
-  double along, height;
-};
-Moved moved_heap(double degrees, std::uint64_t seed) {
-  constexpr int cells = 192;
-  constexpr double centre = 96;
-  Scenario s = bare(cells, cells, 3, 0.1f);
-  s.seed = seed;
-  s.grid.boundary = Boundary::open;
-  s.wind_regime.direction_deg = static_cast<float>(degrees);
-  ConeStep heap;
-  heap.shape = HillShape::gaussian;
-  heap.x = heap.y = centre;
-  heap.radius = 16;
-  heap.height = 8;
-  s.terrain = {heap};
-  Running scene(s);
-  const Field sand = scene.run(40).field(Layer::sand);
-  const double angle = degrees * 3.14159265358979 / 180;
-  Moved m{0, 0};
-  double sum = 0;
-  for (int y = 0; y < cells; ++y)
-    for (int x = 0; x < cells; ++x) {
-      const double depth = sand.at(x, y), e = x + 0.5 - centre, n = y + 0.5 - centre;
-      if (std::hypot(e, n) > centre - 3) continue;  // what has gone far is cut off alike in all directions
-      sum += depth;
-      m.along += depth * (e * std::cos(angle) + n * std::sin(angle));
-      m.height = std::max(m.height, depth);
-    }
-  m.along /= sum;
-  return m;
-}
-
-/// With a shadow whose first sample was √2 cells away on a diagonal, heaps moved 37.4, 38.4, 40.0 m at 0,
-/// 22.5, 45 degrees; now they differ by 2.4 %.
-TEST(Laws, AHeapMovesTheSameWayInEveryDirection) {
-  std::vector<double> along;
-  for (const double degrees : {0.0, 10.0, 22.5, 45.0, 67.5, 90.0, 225.0}) {
-    double mean = 0, height = 0;
-    for (std::uint64_t seed : {1u, 2u, 3u}) {
-      const Moved m = moved_heap(degrees, seed);
-      mean += m.along / 3, height += m.height / 3;
-    }
-    DESERT_REPORT("wind to %.1f: moved %.2f m, height %.2f m", degrees, mean, height);
-    along.push_back(mean);
-  }
-  const auto [least, most] = std::minmax_element(along.begin(), along.end());
-  EXPECT_LT(*most / *least, 1.05);
-  EXPECT_GT(*least, 20);
-}
-
 /// Where the largest dune's slip face stands along x, at half its height in the row of its crest; and how
 /// high it is.
 struct Barchan {

@@ -8,6 +8,8 @@ namespace desert_sim {
 namespace {
 
 constexpr Quanta metre = 1 << 20;
+constexpr AvalancheScheme every_scheme[] = {AvalancheScheme::sweeps, AvalancheScheme::taylor_keyser,
+                                            AvalancheScheme::multilevel, AvalancheScheme::gradient};
 
 AvalanchingParameters one_sweep(AvalancheScheme scheme = AvalancheScheme::sweeps) {
   AvalanchingParameters p;
@@ -74,8 +76,7 @@ TEST_P(Avalanching, TaylorKeyserMovesAQuarterOfTheLargestDropByTangents) {
 }
 
 TEST_P(Avalanching, WorksAcrossAPeriodicBorderAndNotAcrossAnOpenOne) {
-  for (AvalancheScheme scheme :
-       {AvalancheScheme::sweeps, AvalancheScheme::taylor_keyser, AvalancheScheme::multilevel})
+  for (AvalancheScheme scheme : every_scheme)
     for (bool periodic : {true, false}) {
       test::BenchTerrain t(exec(), 6, 1, 1, periodic);
       t.set(Layer::sand, [](int x, int) { return x == 0 ? 10 : 0; });
@@ -88,8 +89,7 @@ TEST_P(Avalanching, WorksAcrossAPeriodicBorderAndNotAcrossAnOpenOne) {
 }
 
 TEST_P(Avalanching, ObstaclesNeitherGiveNorTake) {
-  for (AvalancheScheme scheme :
-       {AvalancheScheme::sweeps, AvalancheScheme::taylor_keyser, AvalancheScheme::multilevel}) {
+  for (AvalancheScheme scheme : every_scheme) {
     test::BenchTerrain t(exec(), 48, 48, 1);
     const auto solid = [](int x, int y) { return x > 20 && x < 26 && y > 18 && y < 30; };
     t.set(Layer::obstacle, [&](int x, int y) { return solid(x, y) ? 1 : 0; });
@@ -130,29 +130,33 @@ TEST_P(Avalanching, ConvergedIsWithinToleranceOfRepose) {
 /// On whole tiles and broken ones, with and without borders, obstacles, thin sand on rock, and wet sand that
 /// rests at next to no angle: what is left is within the tolerance, by the law that judges residuals.
 TEST_P(Avalanching, ConvergesWhateverTheTerrain) {
-  for (const Grid& g : {Grid{128, 96, 1, true, true}, Grid{101, 77, 1, true, true},
-                        Grid{90, 71, 1, false, false}, Grid{70, 90, 0.5f, false, false}})
-    for (double repose : {0.65, 0.02}) {
-      test::BenchTerrain t(exec(), g.width, g.height, g.cell_size, g.periodic_x);
-      t.set(Layer::bedrock, [](int x, int y) { return 2 + 2 * std::sin(0.2 * x) * std::cos(0.3 * y); });
-      t.set(Layer::sand,
-            [](int x, int y) { return (x * 7919 + y * 104729) % 1000 * (x > 30 ? 3e-3 : 3e-5); });
-      t.set(Layer::obstacle, [](int x, int y) { return x % 40 > 36 && y % 30 > 20 ? 1 : 0; });
-      t.set_repose([&](int x, int) { return repose * (x % 20 < 10 ? 1 : 0.8); });
-      AvalanchingParameters p;
-      p.quality = AvalancheQuality::converged;
-      const long long before = t.total(Layer::sand);
-      EXPECT_LT(t.avalanche(p), p.max_iterations) << g.width << ", " << repose;
-      EXPECT_EQ(t.total(Layer::sand), before);
-      const Residual left = with_backend(
-          exec(), [&](auto& e) { return statistics::residual(e, t.terrain.view(), t.repose.data()); });
-      EXPECT_LE(left.largest_excess, p.tolerance) << g.width << ", " << repose;
-    }
+  for (AvalancheScheme scheme : {AvalancheScheme::multilevel, AvalancheScheme::gradient})
+    for (const Grid& g : {Grid{128, 96, 1, true, true}, Grid{101, 77, 1, true, true},
+                          Grid{90, 71, 1, false, false}, Grid{70, 90, 0.5f, false, false}})
+      for (double repose : {0.65, 0.02}) {
+        test::BenchTerrain t(exec(), g.width, g.height, g.cell_size, g.periodic_x);
+        t.set(Layer::bedrock, [](int x, int y) { return 2 + 2 * std::sin(0.2 * x) * std::cos(0.3 * y); });
+        t.set(Layer::sand,
+              [](int x, int y) { return (x * 7919 + y * 104729) % 1000 * (x > 30 ? 3e-3 : 3e-5); });
+        t.set(Layer::obstacle, [](int x, int y) { return x % 40 > 36 && y % 30 > 20 ? 1 : 0; });
+        t.set_repose([&](int x, int) { return repose * (x % 20 < 10 ? 1 : 0.8); });
+        AvalanchingParameters p;
+        p.scheme = scheme;
+        p.quality = AvalancheQuality::converged;
+        const long long before = t.total(Layer::sand);
+        EXPECT_LT(t.avalanche(p), p.max_iterations)
+            << g.width << ", " << repose << ", " << avalanche_schemes[static_cast<int>(scheme)];
+        EXPECT_EQ(t.total(Layer::sand), before);
+        const Residual left = with_backend(exec(), [&](auto& e) {
+          return statistics::residual(e, t.terrain.view(), t.repose.data(), scheme);
+        });
+        EXPECT_LE(left.largest_excess, p.tolerance)
+            << g.width << ", " << repose << ", " << avalanche_schemes[static_cast<int>(scheme)];
+      }
 }
 
 TEST_P(Avalanching, LeavesWhatIsAtReposeToTheBit) {
-  for (AvalancheScheme scheme :
-       {AvalancheScheme::sweeps, AvalancheScheme::taylor_keyser, AvalancheScheme::multilevel}) {
+  for (AvalancheScheme scheme : every_scheme) {
     test::BenchTerrain t(exec(), 64, 64, 1, false);
     t.set(Layer::sand, [](int x, int) { return 0.6 * x; });
     t.set_repose([](int, int) { return 0.601; });

@@ -7,6 +7,7 @@
 
 #include "test/support/bench_terrain.hpp"
 #include "test/support/imprint.hpp"
+#include "test/support/running.hpp"
 #include "test/support/world.hpp"
 
 namespace desert_sim {
@@ -83,6 +84,42 @@ TEST_P(Column, SlidesToAConeOfTheSameAngleOnHalfMetreCells) {
   const double volume = 12.5 * 12.5 * 40, cone = std::cbrt(3 * volume * tangent * tangent / 3.14159265358979);
   EXPECT_GE(height, 0.98 * cone);
   EXPECT_LE(height, 1.06 * cone) << "of a pyramid of eight sides";
+}
+
+/// By the gradient it is a cone: the same angle and radius in every direction. Eight neighbours leave 33.0 to
+/// 34.5 degrees, and radii within 6 %.
+TEST_P(Column, OfAHillIsARoundConeBySchemeGradient) {
+  constexpr int n = 160;
+  constexpr double centre = 79.5, pi = 3.14159265358979;
+  test::BenchTerrain t(exec(), n, n, 1, true);
+  t.set(Layer::sand, [](int x, int y) {
+    const double e = x - centre, s = y - centre;
+    return 25 * std::exp(-(e * e + s * s) / (2 * 12 * 12));
+  });
+  const double tangent = std::tan(33 * pi / 180);
+  t.set_repose([&](int, int) { return tangent; });
+  AvalanchingParameters p;
+  p.scheme = AvalancheScheme::gradient;
+  p.quality = AvalancheQuality::converged;
+  EXPECT_LT(t.avalanche(p), p.max_iterations);
+  const Field sand{n, n, 1, true, t.terrain.values(Layer::sand)};
+  const auto at = [&](double angle, double r) {
+    return sand.sample(centre + r * std::cos(angle), centre + r * std::sin(angle));
+  };
+  std::vector<double> degrees, radii;
+  for (int a = 0; a < 32; ++a) {
+    const double angle = a * pi / 16;
+    double r = 2;
+    while (at(angle, r) > 8) r += 0.05;
+    radii.push_back(r);
+    degrees.push_back(std::atan((at(angle, r - 3) - at(angle, r + 3)) / 6) * 180 / pi);
+  }
+  const auto [gentlest, steepest] = std::minmax_element(degrees.begin(), degrees.end());
+  const auto [least, greatest] = std::minmax_element(radii.begin(), radii.end());
+  DESERT_REPORT("slopes %.2f to %.2f degrees, radii %.2f to %.2f m", *gentlest, *steepest, *least, *greatest);
+  EXPECT_GT(*gentlest, 32.5);
+  EXPECT_LT(*steepest, 33.5);
+  EXPECT_LT(*greatest / *least, 1.02);
 }
 
 /// A quarter of the size for the reference scheme, which takes many more sweeps. The coarse levels, of four

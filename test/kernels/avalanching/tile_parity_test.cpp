@@ -27,25 +27,38 @@ void expect_same_bits(const test::TileField& field, float share) {
     }
 }
 
+/// The shares at which the law by pairs, or by quads, is tried.
+std::vector<float> shares_of(bool by_gradient) {
+  return by_gradient ? std::vector<float>{0.3f, 0.75f} : std::vector<float>{0.3f, 0.65f, 1.0f};
+}
+
 class TileParity : public ::testing::TestWithParam<int> {};
 
 TEST_P(TileParity, IsBitForBit) {
   DESERT_NEED_GPU();
-  const test::TileField field = test::tile_fields()[static_cast<std::size_t>(GetParam())];
-  for (float share : {0.3f, 0.65f, 1.0f}) expect_same_bits(field, share);
+  test::TileField field = test::tile_fields()[static_cast<std::size_t>(GetParam())];
+  for (const bool by_gradient : {false, true}) {
+    field.by_gradient = by_gradient;
+    for (float share : shares_of(by_gradient)) expect_same_bits(field, share);
+  }
 }
 
 TEST(TilesOfFamilies, AreTheSameBitForBit) {
   DESERT_NEED_GPU();
-  for (const test::TileField& field : test::tile_fields_with_coarse_changes()) expect_same_bits(field, 0.65f);
+  for (test::TileField field : test::tile_fields_with_coarse_changes())
+    for (const bool by_gradient : {false, true}) {
+      field.by_gradient = by_gradient;
+      expect_same_bits(field, 0.65f);
+    }
 }
 
 /// In passing, where blocks lie in one tile each, and as a pass of its own.
 TEST_P(TileParity, WhatIsFilledAfterwardsIsBitForBit) {
   DESERT_NEED_GPU();
   const auto cpu = make_exec("cpu", 2), cuda = make_exec("cuda");
-  const test::TileField field = test::tile_fields()[static_cast<std::size_t>(GetParam())];
+  test::TileField field = test::tile_fields()[static_cast<std::size_t>(GetParam())];
   for (int offset : {0, 4, 20, 6}) {
+    field.by_gradient = offset == 4;
     SCOPED_TRACE(field.name + ", offset " + std::to_string(offset));
     EXPECT_TRUE(field.relaxed_and_measured(*cpu, offset) == field.relaxed_and_measured(*cuda, offset));
     if (field.coarse().cells() == 0) continue;

@@ -33,9 +33,11 @@ class AvalanchingTile : public test::OnBackend {
 
 TEST_P(AvalanchingTile, KeepsMassToTheBitAndSandNeverNegative) {
   for (const TileField& field : test::tile_fields())
-    for (float share : {0.5f, 1.0f})
+    for (const auto& [share, by_gradient] :
+         {std::pair{0.5f, false}, {1.0f, false}, {0.5f, true}, {0.75f, true}})
       for (int sweeps : {1, 8}) {
         TileField f = field;
+        f.by_gradient = by_gradient;
         for (int pass = 0; pass < 6; ++pass) {
           f.sand = f.relaxed(exec(), 4 * pass, sweeps, false, share);
           ASSERT_EQ(total(f.sand), total(field.sand)) << f.name << ", pass " << pass;
@@ -45,11 +47,129 @@ TEST_P(AvalanchingTile, KeepsMassToTheBitAndSandNeverNegative) {
 }
 
 TEST_P(AvalanchingTile, MovesSomethingWhereItShould) {
-  for (const TileField& f : test::tile_fields()) {
+  for (TileField f : test::tile_fields()) {
     const bool still = f.name == "no sand" || f.name == "at rest" || f.name == "one cell" ||
                        f.name == "steeper than can matter" || f.name == "nothing but walls";
-    EXPECT_EQ(f.relaxed(exec(), 0, 1, false) == f.sand, still) << f.name;
+    for (const bool by_gradient : {false, true}) {
+      f.by_gradient = by_gradient;
+      EXPECT_EQ(f.relaxed(exec(), 0, 1, false) == f.sand, still) << f.name << (by_gradient ? ", quads" : "");
+    }
   }
+}
+
+/// A quad by hand: of a drop of 1 along one diagonal and none along the other g is √½, no more than what lies
+/// at repose stays, and no sand leaves the range of the four.
+TEST_P(AvalanchingTile, OfOneQuadSlidesByItsGradient) {
+  for (const double top : {0.5, 1.0, 3.0}) {
+    TileField f;
+    f.grid = {2, 2, 1, false, false};
+    f.by_gradient = true;
+    f.ground.assign(4, 0);
+    const double heights[] = {top, top / 2, top / 2, 0};  // a plane
+    for (double h : heights) f.sand.push_back(static_cast<Quanta>(std::llround(h * 1048576)));
+    f.repose.assign(4, 0.5f);
+    const double slope = top / std::sqrt(2.0), moved = 0.5 * top * std::max(0.0, 1 - 0.5 / slope);
+    const std::vector<Quanta> after = f.relaxed(exec(), 0, 1, false, 0.5f);
+    EXPECT_NEAR(after[0] / 1048576.0, top - moved, 1e-4) << top;
+    EXPECT_NEAR(after[3] / 1048576.0, moved, 1e-4) << top;
+    EXPECT_EQ(after[1], f.sand[1]);
+    EXPECT_EQ(after[2], f.sand[2]);
+  }
+}
+
+/// Two cells at 0.2 and two at 0.8 let a plane slide from 0.5 on.
+TEST_P(AvalanchingTile, OfAQuadSlidesByTheMeanOfItsAngles) {
+  for (const double tangent : {0.49, 0.51}) {
+    TileField f;
+    f.grid = {2, 2, 1, false, false};
+    f.by_gradient = true;
+    f.ground.assign(4, 0);
+    for (double h : {2.0, 2 - tangent, 2.0, 2 - tangent})
+      f.sand.push_back(static_cast<Quanta>(std::llround(h * 1048576)));
+    f.repose = {0.2f, 0.8f, 0.8f, 0.2f};
+    EXPECT_EQ(f.relaxed(exec(), 0, 1, false) == f.sand, tangent < 0.5) << tangent;
+  }
+}
+
+/// One high cell of four: p = t = 0.6 and q = 0, so that g is 0.6, and not its half by √2.
+TEST_P(AvalanchingTile, OfASpikeSlidesAllThatExceedsRepose) {
+  TileField f;
+  f.grid = {2, 2, 1, false, false};
+  f.by_gradient = true;
+  f.ground.assign(4, 0);
+  for (double h : {1.6, 1.0, 1.0, 1.0}) f.sand.push_back(static_cast<Quanta>(std::llround(h * 1048576)));
+  f.repose.assign(4, 0.5f);
+  const double share = 0.5 * (1 - 0.5 / 0.6);
+  const std::vector<Quanta> after = f.relaxed(exec(), 0, 1, false, 0.5f);
+  EXPECT_NEAR(after[0] / 1048576.0, 1.6 - 0.6 * share * 4 / 3, 1e-4);
+  EXPECT_NEAR(after[3] / 1048576.0, 1.0 + 0.6 * share * 2 / 3, 1e-4);
+  EXPECT_NEAR(after[1] / 1048576.0, 1.0 + 0.6 * share / 3, 1e-4);
+}
+
+/// A step of bare rock between two cells that lie flat: what cannot slide does not make them slide.
+TEST_P(AvalanchingTile, BesideAStepOfRockKeepsItsSlope) {
+  TileField f;
+  f.grid = {2, 2, 1, false, false};
+  f.by_gradient = true;
+  for (double h : {9.0, 0.0, 0.0, 0.0}) f.ground.push_back(static_cast<Quanta>(std::llround(h * 1048576)));
+  for (double h : {0.0, 1.3, 1.0, 1.0}) f.sand.push_back(static_cast<Quanta>(std::llround(h * 1048576)));
+  f.repose.assign(4, 0.5f);
+  EXPECT_EQ(f.relaxed(exec(), 0, 8, false), f.sand);
+}
+
+/// A row of cells between walls: a pair by the drop from one to the other, as without quads.
+TEST_P(AvalanchingTile, AlongAWallSlidesByStraightPairs) {
+  for (const bool along_x : {true, false}) {
+    TileField f;
+    f.grid = along_x ? Grid{4, 1, 1, false, false} : Grid{1, 4, 1, false, false};
+    f.by_gradient = true;
+    f.ground.assign(4, 0);
+    for (double h : {3.0, 1.0, 1.0, 1.0}) f.sand.push_back(static_cast<Quanta>(std::llround(h * 1048576)));
+    f.repose.assign(4, 0.5f);
+    const std::vector<Quanta> after = f.relaxed(exec(), 0, 8, false, 0.5f);
+    EXPECT_LT(after[0] / 1048576.0, 2.6) << along_x;
+    EXPECT_GT(after[1] / 1048576.0, 1.2) << along_x;
+  }
+}
+
+/// Sand that nothing holds runs down as fast along x as along y: in one order of quads, twice as fast.
+TEST_P(AvalanchingTile, OfLooseSandRunsAsFastAlongEitherAxis) {
+  double moved[2];
+  for (const int axis : {0, 1}) {
+    TileField f;
+    f.grid = {32, 32, 1, false, false};
+    f.by_gradient = true;
+    f.ground.assign(1024, 0);
+    f.repose.assign(1024, 0.0f);
+    for (int y = 0; y < 32; ++y)
+      for (int x = 0; x < 32; ++x)
+        f.sand.push_back(static_cast<Quanta>((1 + 0.2 * (axis == 0 ? x : y)) * 1048576));
+    const std::vector<Quanta> after = f.relaxed(exec(), 0, 8, false, 0.7f);
+    moved[axis] = 0;
+    for (int i = 0; i < 1024; ++i)
+      moved[axis] += (axis == 0 ? i % 32 : i / 32) * static_cast<double>(f.sand[i] - after[i]) / 1048576;
+  }
+  EXPECT_GT(moved[0], 100);
+  EXPECT_NEAR(moved[1] / moved[0], 1, 0.1);
+}
+
+/// A plane just under repose keeps to the bit and one just over it slides, whichever way it faces: to the
+/// neighbours alone, a slope of 22.5 degrees of aspect is 8 % less steep than it is.
+TEST_P(AvalanchingTile, OfAPlaneSlidesFromTheSameAngleForEveryAspect) {
+  for (const double aspect : {0.0, 10.0, 22.5, 45.0, 80.0})
+    for (const double over : {-0.01, 0.01}) {
+      TileField f;
+      f.grid = {32, 32, 1, false, false};
+      f.by_gradient = true;
+      f.ground.assign(1024, 0);
+      f.repose.assign(1024, 0.6f);
+      const double angle = aspect * 3.14159265358979 / 180, tangent = 0.6 + over;
+      for (int y = 0; y < 32; ++y)
+        for (int x = 0; x < 32; ++x)
+          f.sand.push_back(static_cast<Quanta>(
+              std::llround((1 + tangent * (x * std::cos(angle) + y * std::sin(angle))) * 1048576)));
+      EXPECT_EQ(f.relaxed(exec(), 0, 1, false) == f.sand, over < 0) << aspect << ", " << over;
+    }
 }
 
 TEST_P(AvalanchingTile, IsClosed) {
