@@ -13,8 +13,10 @@
 ///   e = 1 − tan θ / g
 ///
 /// of the drops slides: ω p e from a to d, ω q e from b to c, and ⅓ ω t e from each of a and d to b and c.
-/// With ω = ½ a plane is left at repose; with ω ≤ ¾ no cell leaves the range of the four. On slopes that
-/// follow an axis and on those that follow a diagonal the same flux results, and a cone is round within 1 %.
+/// With ω = ½ a plane is left at repose. With ω ≤ ¾ no cell leaves the range of the four where all of them
+/// have sand enough; beside bare rock the twist can put sand on a cell that is higher than the donors, by up
+/// to a quarter of that range. On slopes that follow an axis and on those that follow a diagonal the same
+/// flux results, and a cone is round within 2 %.
 /// A law that looks at each neighbour for itself (patch.hpp) lets a rough slope that faces along a diagonal
 /// move a fifth faster; tan θ of the donor alone, a tenth where it differs from cell to cell
 /// (doc/notebook/avalanching.md).
@@ -45,7 +47,8 @@ struct Quad {
   float sand_a, sand_b, sand_c, sand_d;  ///< not read if all of it is `deep`
 };
 
-/// What would slide with ω = 1, signed as p, q, t; where the quad is not deep, no more than its donors have.
+/// What would slide with ω = 1, signed as p, q, t. It may be more than the donors have; who moves it limits
+/// it to that.
 struct QuadSlides {
   float p, q, t;
   static constexpr float of_twist = 1.0f / 3.0f;
