@@ -34,8 +34,8 @@ class DrapedDisplays : public TerrainDisplay {
     if (!topic.empty()) display->setTopic(QString::fromStdString(topic), "");
     if (property(display, {"Node"})) set(display, {"Node"}, "/draped");
     display->setEnabled(true);
-    EXPECT_TRUE(window_->run_until([&] { return is_ready(terrain_); }));
-    window_->run_frames(3);
+    EXPECT_TRUE(settles(terrain_));
+    window_->run_frames(1);
     return display;
   }
   std::uint32_t pixel(double x, double y) {
@@ -104,8 +104,7 @@ TEST_F(DrapedDisplays, AMapLiesOnTheGroundWhereItsCellsAre) {
   // The ground moves, and the map with it: no map is sent again.
   const double built = number(terrain_, "built_blocks");
   node_.update(0, 0, side, side, [](int x, int y) { return 5 - dunes(x, y); });
-  ASSERT_TRUE(
-      window_->run_until([&] { return number(terrain_, "built_blocks") > built && is_ready(terrain_); }));
+  ASSERT_TRUE(settles(terrain_, [&] { return number(terrain_, "built_blocks") > built; }));
   window_->run_frames(2);
   for (const double x : {42.5, 46.5, 50.5, 54.5, 58.5}) EXPECT_TRUE(is_lethal(pixel(x, 20))) << x;
 
@@ -222,8 +221,7 @@ TEST_F(DrapedDisplays, APathLiesOnTheGroundAndFollowsIt) {
   window_->run_frames(5);
   EXPECT_EQ(number(display, "built_lines"), built) << "nothing has changed";
   node_.update(0, 0, side, side, [](int x, int y) { return 20 - dunes(x, y); });
-  ASSERT_TRUE(
-      window_->run_until([&] { return number(display, "built_lines") > built && is_ready(terrain_); }));
+  ASSERT_TRUE(settles(terrain_, [&] { return number(display, "built_lines") > built; }));
   window_->run_frames(2);
   for (double x = 6; x < 59; x += 3) EXPECT_EQ(pixel(x, 32), 0x0000ffu) << x << ": the ground has risen";
   paths.publish(path_of({}));

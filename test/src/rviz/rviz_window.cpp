@@ -31,6 +31,8 @@ double now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
+constexpr int frames_to_move = 3;  // a camera moves at the end of a frame; a display sees it in the next one
+
 }  // namespace
 
 // ---- Screen ----
@@ -125,6 +127,7 @@ void Window::look_at(double side) {
   focus->subProp("X")->setValue(0.5 * side);
   focus->subProp("Y")->setValue(0.5 * side);
   focus->subProp("Z")->setValue(0);
+  run_frames(frames_to_move);
 }
 
 void Window::look_from_above(double x, double y, double pixels_per_metre) {
@@ -133,6 +136,7 @@ void Window::look_from_above(double x, double y, double pixels_per_metre) {
   view->subProp("Scale")->setValue(pixels_per_metre);
   view->subProp("X")->setValue(x);
   view->subProp("Y")->setValue(y);
+  run_frames(frames_to_move);
 }
 
 bool Window::run_until(const std::function<bool()>& condition, double seconds) {

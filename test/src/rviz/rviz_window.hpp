@@ -43,8 +43,9 @@ class Window {
   rviz::VisualizationManager& manager() { return *manager_; }
   void set_fixed_frame(const std::string& frame) { manager_->setFixedFrame(QString::fromStdString(frame)); }
   /// Looks at a square of this side, whose south-west corner is the origin of the fixed frame [m].
+  /// Returns when the displays have seen that the camera moved.
   void look_at(double side);
-  /// Looks from above with this scale [pixels/m].
+  /// Looks from above with this scale [pixels/m]. Returns when the displays have seen it.
   void look_from_above(double x, double y, double pixels_per_metre);
 
   /// Draws frames until the condition holds; false if it does not within the time [s], times patience().

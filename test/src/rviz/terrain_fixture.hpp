@@ -47,9 +47,19 @@ class TerrainDisplay : public testing::Test {
     set(display, {"Sky"}, false);
     window_->look_at(side);
     node.keyframe(side, side, height);
-    EXPECT_TRUE(window_->run_until([&] { return node.has_subscribers() && is_ready(display); }))
-        << status(display, "Topic").text;
+    EXPECT_TRUE(settles(display, [&] { return node.has_subscribers(); })) << status(display, "Topic").text;
     return display;
+  }
+  /// Waits until `also` holds and the display shows all blocks at the levels that it keeps. A frame chooses
+  /// levels anew, from those of the frame before: only one that builds nothing shows that they stay.
+  static bool settles(
+      rviz::Display* display, const std::function<bool()>& also = [] { return true; }) {
+    return window_->run_until([&] {
+      if (!also() || !is_ready(display)) return false;
+      const double built = number(display, "built_blocks");
+      window_->run_frames(1);
+      return is_ready(display) && number(display, "built_blocks") == built;
+    });
   }
   static bool is_ready(rviz::Display* display) {
     return number(display, "blocks") > 0 && number(display, "waiting_blocks") == 0 &&
