@@ -238,14 +238,20 @@ struct RelaxTile {
     return max_moved;
   }
 
-  /// Calls body(i, n) for each cell of the tile that exists, with its index in the grid and in the tile.
-  template <class Team, class Body>
-  DESERT_HD void for_each_cell_of_tile(const Team& team, int column, int row, const Body& body) const {
+  struct Nothing {
+    DESERT_HD void operator()(int) const {}
+  };
+  /// Calls body(i, n) for each cell of the tile that exists, with its index in the grid and in the tile. If
+  /// the tile's rows are contiguous, before_row(i) is called with the first cell of each.
+  template <class Team, class Body, class BeforeRow = Nothing>
+  DESERT_HD void for_each_cell_of_tile(const Team& team, int column, int row, const Body& body,
+                                       const BeforeRow& before_row = {}) const {
     const int width = level.grid.width;
     const int corner = (row * side - tiles.offset) * width + column * side - tiles.offset;
     const bool contiguous = is_contiguous(column, row);
     team.for_each_row([=](int y) DESERT_INLINE {
       const int first = corner + y * width;
+      if (contiguous) before_row(first);
       if (contiguous)
         team.template for_each_in_row<Patch::side>(
             [=](int n, auto k) DESERT_INLINE { body(first + n * Patch::side + k, local(y, n, k)); });
@@ -272,11 +278,14 @@ struct RelaxTile {
   template <class Team>
   DESERT_HD Range load_heights(const Team& team, int column, int row, float* h, float* ground) const {
     const LevelView from = level;
-    for_each_cell_of_tile(team, column, row, [=](int i, int n) DESERT_INLINE {
-      const Quanta height = from.height(i);
-      h[n] = float_from_bits(static_cast<std::uint32_t>(height));
-      ground[n] = float_from_bits(static_cast<std::uint32_t>(height - from.sand[i]));
-    });
+    for_each_cell_of_tile(
+        team, column, row,
+        [=](int i, int n) DESERT_INLINE {
+          const Quanta height = from.height(i);
+          h[n] = float_from_bits(static_cast<std::uint32_t>(height));
+          ground[n] = float_from_bits(static_cast<std::uint32_t>(height - from.sand[i]));
+        },
+        [=](int first) DESERT_INLINE { team.fetch_ahead(from.repose + first, side); });
     const auto height = [=](int n) DESERT_INLINE { return static_cast<Quanta>(bits_of(h[n])); };
     const auto below = [=](int n, const float* of) DESERT_INLINE {
       return height(n) < wall_height ? -static_cast<Quanta>(bits_of(of[n])) : wall_height;
@@ -292,14 +301,19 @@ struct RelaxTile {
                       float* drop, Quanta* base) const {
     const LevelView from = level;
     for_each_cell_of_tile(team, column, row, [=](int i, int n) DESERT_INLINE {
-      const Quanta height = static_cast<Quanta>(bits_of(h[n])), sand = from.sand[i];
-      const bool wall = height >= wall_height;
-      h[n] = wall ? Units::wall : units.height(height);
-      ground[n] = wall ? Units::wall : units.ground(height, sand);
-      drop[n] = wall ? Units::wall : units.drop(from.repose[i], from.quanta_per_cell);
+      const Quanta read = static_cast<Quanta>(bits_of(h[n])), sand = from.sand[i];
+      const bool wall = read >= wall_height;
+      // Of walls, too, without branches, so that the loop becomes vectors.
+      const Quanta height = wall ? units.lowest : read;
+      const float drop_here = units.drop(from.repose[i], from.quanta_per_cell),
+                  height_here = units.height(height), ground_here = units.ground(height, sand);
+      h[n] = wall ? Units::wall : height_here;
+      ground[n] = wall ? Units::wall : ground_here;
+      drop[n] = wall ? Units::wall : drop_here;
       base[n] = difference_modulo(sand, units.of_height(h[n]));
     });
-    team.for_each(cells, [=](int n) DESERT_INLINE { h[n] = ground[n] == Units::wall ? Units::wall : h[n]; });
+    // Where there is no cell, too. All ground but that of walls is lower than the height.
+    team.for_each(cells, [=](int n) DESERT_INLINE { h[n] = fast_max(h[n], ground[n]); });
     // Copies of the first cells of each row at its end.
     team.for_each(side * Patch::side, [=](int i) DESERT_INLINE {
       const int y = i / Patch::side, k = i % Patch::side;

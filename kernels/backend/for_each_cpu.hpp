@@ -101,6 +101,13 @@ struct CpuTeam {
     }
     return least;
   }
+  /// Asks for a row of values that are read soon.
+  template <class Value>
+  DESERT_HD void fetch_ahead(const Value* row, int count) const {
+    constexpr int cache_line = 64 / sizeof(Value);
+    for (int n = 0; n < count; n += cache_line) __builtin_prefetch(row + n);
+    __builtin_prefetch(row + count - 1);
+  }
   /// Calls body(y) for each row of a tile. All calls are complete when it returns.
   template <class Body>
   DESERT_HD void for_each_row(const Body& body) const {

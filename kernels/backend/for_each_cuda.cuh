@@ -151,6 +151,8 @@ struct Team {
   DESERT_HD int min_of(int width, int height, const Value& value) const {
     return min_of(width * height, [&](int i) { return value(i % width, i / width); });
   }
+  template <class Value>
+  DESERT_HD void fetch_ahead(const Value*, int) const {}  ///< other threads work meanwhile
   /// Each warp takes one row at a time.
   template <class Body>
   DESERT_HD void for_each_row(const Body& body) const {
