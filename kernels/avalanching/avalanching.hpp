@@ -111,7 +111,8 @@ constexpr Schedule preset(AvalancheQuality quality) {
 }
 
 /// The schedule of a quality. On small grids `good` takes more last sweeps, which cost next to nothing on a
-/// GPU, so that hardly any excess is left there. A positive `last_passes` replaces the number of last passes,
+/// GPU, so that hardly any excess is left there. By the gradient it takes fewer of them, so that it takes no
+/// longer. A positive `last_passes` replaces the number of last passes,
 /// and selects the sweeps of large grids.
 Schedule schedule(const AvalanchingParameters& p, const Grid& grid);
 

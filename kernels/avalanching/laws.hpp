@@ -336,21 +336,18 @@ struct QuadExcess {
 
  private:
   DESERT_HD float of_quad(const int (&cell)[4]) const {
-    Quanta h[4];
-    float sand[4], repose = 0.0f;
+    float h[4], sand[4], repose = 0.0f;  // heights above the first cell
     for (int n = 0; n < 4; ++n) {
-      h[n] = level.height(cell[n]);
+      h[n] = static_cast<float>(level.height(cell[n]) - level.height(cell[0]));
       sand[n] = static_cast<float>(level.sand[cell[n]]);
-      repose += 0.25f * level.repose[cell[n]];
+      repose += level.repose[cell[n]];
     }
-    const auto drop = [&](int from, int to) { return static_cast<float>(h[from] - h[to]); };
-    const Quad quad{drop(0, 3), drop(1, 2), drop(0, 1) - drop(2, 3), sand[0], sand[1], sand[2], sand[3]};
-    const QuadSlides slides = QuadSlides::of<false>(quad, repose * level.quanta_per_cell);
-    const float p = minimum(fabsf(slides.p), slides.p > 0.0f ? sand[0] : sand[3]),
-                q = minimum(fabsf(slides.q), slides.q > 0.0f ? sand[1] : sand[2]),
-                t = minimum(fabsf(slides.t),
-                            slides.t > 0.0f ? minimum(sand[0], sand[3]) : minimum(sand[1], sand[2]));
-    return maximum(maximum(p, q), t);
+    const Quad quad{h[0] - h[3], h[1] - h[2], (h[0] - h[1]) - (h[2] - h[3]), sand[0], sand[1],
+                    sand[2],     sand[3]};
+    const auto share = SlidingShares::of<false>(quad, repose * level.quanta_per_cell, 0.0f);
+    QuadSlides slides{share.p * quad.p, share.q * quad.q, share.t * quad.t};
+    slides.limit(h[0], h[1], h[2], h[3], quad);
+    return maximum(maximum(fabsf(slides.p), fabsf(slides.q)), fabsf(slides.t));
   }
   DESERT_HD float of_straight_pairs(const int (&cell)[4]) const {
     return maximum(maximum(of_pair(cell[0], cell[1]), of_pair(cell[2], cell[3])),

@@ -51,6 +51,10 @@ DESERT_HD float with_odd_mantissa(float share) {
   return share == 0.0f ? 0.0f : fast_min(float_from_bits(bits_of(share) | 1u), 1.0f - 1.0f / 16777216.0f);
 }
 
+/// The share of a gap that nothing crosses: of no excess does it make a unit. It is not 0, as products with
+/// it must be no subnormal numbers, which take processors long (quads.hpp).
+constexpr float closed_gap = 1e-10f;
+
 /// Shares ω for the three gaps between a patch's columns and for those between its rows, prepared by
 /// with_odd_mantissa(). Those between rows are the same for all patches beside each other.
 template <int lanes>

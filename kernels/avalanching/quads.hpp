@@ -14,9 +14,8 @@
 ///
 /// of the drops slides: ω p e from a to d, ω q e from b to c, and ⅓ ω t e from each of a and d to b and c.
 /// With ω = ½ a plane is left at repose. With ω ≤ ¾ no cell leaves the range of the four where all of them
-/// have sand enough; beside bare rock the twist can put sand on a cell that is higher than the donors, by up
-/// to a quarter of that range. On slopes that follow an axis and on those that follow a diagonal the same
-/// flux results, and a cone is round within 2 %.
+/// have sand enough, and beside bare rock QuadSlides::limit() sees to it. On slopes that follow an axis and
+/// on those that follow a diagonal the same flux results, and a cone is round within 2 %.
 /// A law that looks at each neighbour for itself (patch.hpp) lets a rough slope that faces along a diagonal
 /// move a fifth faster; tan θ of the donor alone, a tenth where it differs from cell to cell
 /// (doc/notebook/avalanching.md).
@@ -33,33 +32,23 @@
 
 namespace desert_sim::avalanching {
 
-/// 1/√x by half the exponent and a step of third order, within 2e-5; the same bits on host and device. For 0
-/// it is some 1e19.
-DESERT_HD float inverse_root(float x) {
-  const float y = float_from_bits(0x5f3759dfu - (bits_of(x) >> 1));
-  const float error = fused(-x * y, y, 1.0f);
-  return fused(y * error, fused(0.375f, error, 0.5f), y);
-}
-
 /// Drops of a quad, and the sand of its cells, all in the same unit.
 struct Quad {
   float p, q, t;
   float sand_a, sand_b, sand_c, sand_d;  ///< not read if all of it is `deep`
 };
 
-/// What would slide with ω = 1, signed as p, q, t. It may be more than the donors have; who moves it limits
-/// it to that.
-struct QuadSlides {
+/// The shares e of the drops p, q and t that slide with ω = 1. Where sand is deep they are the same.
+struct SlidingShares {
   float p, q, t;
-  static constexpr float of_twist = 1.0f / 3.0f;
 
-  /// `drop`: drop at repose over one cell.
+  /// `drops`: the sum of the four cells' drops at repose over one cell. `least`: the share of what keeps.
   template <bool deep>
-  DESERT_HD static QuadSlides of(const Quad& quad, float drop) {
+  DESERT_HD static SlidingShares of(const Quad& quad, float drops, float least) {
     const float p = quad.p, q = quad.q, t = quad.t;
     if constexpr (deep) {
-      const float share = over(fused(p, p, fused(q, q, t * t)), drop);
-      return {p * share, q * share, t * share};
+      const float share = over(fused(p, p, fused(q, q, t * t)), drops, least);
+      return {share, share, share};
     } else {
       const float p_sand = p > 0.0f ? quad.sand_a : quad.sand_d,
                   q_sand = q > 0.0f ? quad.sand_b : quad.sand_c;
@@ -67,15 +56,44 @@ struct QuadSlides {
       const float p_slides = fast_min(fabsf(p), p_sand), q_slides = fast_min(fabsf(q), q_sand),
                   t_slides = fast_min(fabsf(t), t_sand);
       const float pp = p_slides * p_slides, qq = q_slides * q_slides, tt = t_slides * t_slides;
-      return {p * over(fused(p, p, qq + tt), drop), q * over(fused(q, q, pp + tt), drop),
-              t * over(fused(t, t, pp + qq), drop)};
+      return {over(fused(p, p, qq + tt), drops, least), over(fused(q, q, pp + tt), drops, least),
+              over(fused(t, t, pp + qq), drops, least)};
     }
   }
 
  private:
-  /// The share e of drops whose squares have this sum.
-  DESERT_HD static float over(float squares, float drop) {
-    return positive_part(fused(-drop, inverse_root(0.5f * squares), 1.0f));
+  DESERT_HD static float over(float squares, float drops, float least) {
+    return fast_max(fused(-drops, inverse_steepness(squares), 1.0f), least);
+  }
+  /// 1/√(8 x) by half the exponent and one step of Newton's, within 7e-4, with the constants of the least
+  /// error (Kadlec 2010); the same bits on host and device. It is some 1e19 for 0. With x = 2 l² g² it is ¼
+  /// over the drop that g has over one cell.
+  DESERT_HD static float inverse_steepness(float x) {
+    constexpr float scale = 0.35355339f * 0.703952253f;
+    const float y = float_from_bits(0x5f1ffff9u - (bits_of(x) >> 1));
+    return fused(-x * y, y, 2.38924456f) * (y * scale);
+  }
+};
+
+/// What slides along the diagonals of a quad, and by its twist from each of a and d to b and c.
+struct QuadSlides {
+  float p, q, t;
+
+  /// Limits slides of a quad whose cells have these heights to what the donors have, and the twist so that
+  /// no cell leaves the range of the four: beside bare rock, whose heights count in t, it might.
+  DESERT_HD void limit(float a, float b, float c, float d, const Quad& quad) {
+    p = fast_max(fast_min(p, quad.sand_a), -quad.sand_d);
+    q = fast_max(fast_min(q, quad.sand_b), -quad.sand_c);
+    const float highest = fast_max(fast_max(a, b), fast_max(c, d)),
+                lowest = fast_min(fast_min(a, b), fast_min(c, d));
+    const auto limit_of = [=](float donor_1, float donor_2, float sand_1, float sand_2, float receiver_1,
+                              float receiver_2) DESERT_INLINE {
+      const float room =
+          fast_min(highest - fast_max(receiver_1, receiver_2), fast_min(donor_1, donor_2) - lowest);
+      return fast_min(room, fast_min(sand_1, sand_2));
+    };
+    t = fast_max(fast_min(t, limit_of(a - p, d + p, quad.sand_a - p, quad.sand_d + p, b - q, c + q)),
+                 -limit_of(b - q, c + q, quad.sand_b - q, quad.sand_c + q, a - p, d + p));
   }
 };
 
@@ -101,43 +119,49 @@ struct QuadsOfPatches {
   At at;
   QuadShares<lanes> shares;
   float* max_moved;
+  bool walls;  ///< whether any cell of the tile is a wall
 
   DESERT_HD void relax() const {
-    const bool walls = has_walls();
-    relax_quad<0, 0>(walls), relax_quad<0, 2>(walls), relax_quad<2, 0>(walls), relax_quad<2, 2>(walls);
-    relax_quad<0, 1>(walls), relax_quad<2, 1>(walls);
-    relax_quad<1, 0>(walls), relax_quad<1, 2>(walls);
-    relax_quad<1, 1>(walls);
+    if (walls)
+      relax_quads<true>();
+    else
+      relax_quads<false>();
   }
 
  private:
-  /// Whether any cell is a wall. Heights are less than 2, and walls alone have this bit.
-  static constexpr std::uint32_t wall_bit = 0x40000000u;
-  DESERT_HD bool has_walls() const {
-    std::uint32_t bits = 0;
-    unrolled<Patch::cells>([&](auto n) DESERT_INLINE {
-      const float* cell = h + at(n / Patch::side, n % Patch::side);
-      for (int lane = 0; lane < lanes; ++lane) bits |= bits_of(cell[lane]);
-    });
-    return (bits & wall_bit) != 0;
+  template <bool beside_walls>
+  DESERT_HD void relax_quads() const {
+    relax_quad<0, 0, beside_walls>(), relax_quad<0, 2, beside_walls>();
+    relax_quad<2, 0, beside_walls>(), relax_quad<2, 2, beside_walls>();
+    relax_quad<0, 1, beside_walls>(), relax_quad<2, 1, beside_walls>();
+    relax_quad<1, 0, beside_walls>(), relax_quad<1, 2, beside_walls>();
+    relax_quad<1, 1, beside_walls>();
   }
 
-  template <int row, int column>
-  DESERT_HD void relax_quad(bool walls) const {
+  /// Heights are less than 2, and walls alone have this bit.
+  static constexpr std::uint32_t wall_bit = 0x40000000u;
+
+  template <int row, int column, bool beside_walls>
+  DESERT_HD void relax_quad() const {
     const int a = at(row, column), b = at(row, column + 1), c = at(row + 1, column),
               d = at(row + 1, column + 1);
     float share[lanes];
     DESERT_SIMD
     for (int n = 0; n < lanes; ++n) share[n] = shares(row, column, n);
-    if (walls)
+    if constexpr (beside_walls)
       for (int n = 0; n < lanes; ++n)
         if ((bits_of(h[a + n]) | bits_of(h[b + n]) | bits_of(h[c + n]) | bits_of(h[d + n])) & wall_bit) {
           relax_straight_pair(a + n, b + n, share[n], n), relax_straight_pair(c + n, d + n, share[n], n);
           relax_straight_pair(a + n, c + n, share[n], n), relax_straight_pair(b + n, d + n, share[n], n);
-          share[n] = 0.0f;
+          share[n] = closed_gap;
         }
     relax_diagonals_and_twist(a, b, c, d, share);
   }
+
+  static constexpr float of_twist = 1.0f / 3.0f;
+  static constexpr float negligible = closed_gap;  ///< share of what keeps
+  /// As with_odd_mantissa(), for shares that are less than 1 and not 0.
+  DESERT_HD static float odd(float share) { return float_from_bits(bits_of(share) | 1u); }
 
   DESERT_HD void relax_diagonals_and_twist(int a, int b, int c, int d, const float (&share)[lanes]) const {
     float *h_a = h + a, *h_b = h + b, *h_c = h + c, *h_d = h + d;
@@ -150,21 +174,27 @@ struct QuadsOfPatches {
         quad.sand_a = at_a - ground[a + n], quad.sand_b = at_b - ground[b + n];
         quad.sand_c = at_c - ground[c + n], quad.sand_d = at_d - ground[d + n];
       }
-      const float mean_drop = 0.25f * ((drop_a[n] + drop_b[n]) + (drop_c[n] + drop_d[n]));
-      const QuadSlides slides = QuadSlides::of<deep>(quad, mean_drop);
-      // Rounded to whole units by the subtraction, so that each unit that leaves one cell enters another.
-      float p = at_a - fused(-w, slides.p, at_a), q = at_b - fused(-w, slides.q, at_b);
-      if constexpr (!deep) {
-        p = fast_max(fast_min(p, quad.sand_a), -quad.sand_d);
-        q = fast_max(fast_min(q, quad.sand_b), -quad.sand_c);
+      const SlidingShares shares_of =
+          SlidingShares::of<deep>(quad, (drop_a[n] + drop_b[n]) + (drop_c[n] + drop_d[n]), negligible);
+      // Heights are rounded to whole units by the subtraction; odd shares see to it that each unit that
+      // leaves one cell enters another.
+      const float e_p = odd(w * shares_of.p), e_q = odd(w * shares_of.q), e_t = odd(w * shares_of.t);
+      const float t = of_twist * quad.t;
+      float left_a = fused(-e_p, quad.p, at_a), left_b = fused(-e_q, quad.q, at_b);
+      if constexpr (deep) {
+        const float left_c = fused(e_q, quad.q, at_c), left_d = fused(e_p, quad.p, at_d);
+        h_a[n] = fused(-e_t, t, left_a), h_d[n] = fused(-e_t, t, left_d);
+        h_b[n] = fused(e_t, t, left_b), h_c[n] = fused(e_t, t, left_c);
+        max_moved[n] = fast_max(fast_max(max_moved[n], fabsf(h_a[n] - left_a)),
+                                fast_max(fabsf(left_a - at_a), fabsf(left_b - at_b)));
+      } else {
+        QuadSlides slides{at_a - left_a, at_b - left_b, fused(e_t, t, 1.5f) - 1.5f};
+        slides.limit(at_a, at_b, at_c, at_d, quad);
+        h_a[n] = (at_a - slides.p) - slides.t, h_d[n] = (at_d + slides.p) - slides.t;
+        h_b[n] = (at_b - slides.q) + slides.t, h_c[n] = (at_c + slides.q) + slides.t;
+        max_moved[n] =
+            fast_max(fast_max(max_moved[n], fabsf(slides.t)), fast_max(fabsf(slides.p), fabsf(slides.q)));
       }
-      const float left_a = at_a - p, left_d = at_d + p, left_b = at_b - q, left_c = at_c + q;
-      float t = left_a - fused(-w * QuadSlides::of_twist, slides.t, left_a);
-      if constexpr (!deep)
-        t = fast_max(fast_min(t, fast_min(quad.sand_a - p, quad.sand_d + p)),
-                     -fast_min(quad.sand_b - q, quad.sand_c + q));
-      h_a[n] = left_a - t, h_d[n] = left_d - t, h_b[n] = left_b + t, h_c[n] = left_c + t;
-      max_moved[n] = fast_max(max_moved[n], fast_max(fast_max(fabsf(p), fabsf(q)), fabsf(t)));
     }
   }
 

@@ -55,7 +55,7 @@ struct PatchShift {
 
 /// The share ω of an excess that slides across the nth gap between columns, or between rows, of a tile. Gap n
 /// lies behind column n. Numbers continue beyond the tile's edge, because patches that are shifted over it
-/// re-enter on the other side; the gap at the edge itself is closed (ω = 0).
+/// re-enter on the other side; the gap at the edge itself is closed.
 class GapOmega {
  public:
   /// `next_to_edge`: ω of the first and the last gap. Sand that cannot cross the edge piles up before it and
@@ -66,7 +66,7 @@ class GapOmega {
   DESERT_HD float operator()(int n) const {
     const int gap = n % Tiles::side;
     const float share = gap == 0 || gap == Tiles::side - 2 ? next_to_edge_ : inside_;
-    return gap == Tiles::side - 1 ? 0.0f : share;
+    return gap == Tiles::side - 1 ? closed_gap : share;
   }
 
  private:
@@ -146,10 +146,11 @@ struct RelaxTile {
     const float steepest = (units.height(range.highest) - Units::floor) * (by_gradient ? 1.7320509f : 1.0f);
     if (steepest <= least(team, drop)) return;
     const float threshold = units.drop(continue_threshold, level.quanta_per_cell);
+    const bool walls = by_gradient && has_walls(team, drop);
     const bool moved = relax([&](int, const PatchShift& shift) DESERT_INLINE {
       const float max_moved = by_gradient
-                                  ? (range.deep() ? sweep<true, true>(team, shift, h, ground, drop)
-                                                  : sweep<false, true>(team, shift, h, ground, drop))
+                                  ? (range.deep() ? sweep<true, true>(team, shift, h, ground, drop, walls)
+                                                  : sweep<false, true>(team, shift, h, ground, drop, walls))
                                   : (range.deep() ? sweep<true, false>(team, shift, h, ground, drop)
                                                   : sweep<false, false>(team, shift, h, ground, drop));
       return max_moved > threshold ? Moved::much : (max_moved > 0.0f ? Moved::little : Moved::nothing);
@@ -202,10 +203,11 @@ struct RelaxTile {
     }
   };
 
-  /// One sweep over all pairs, or quads. Returns the largest amount that one has moved.
+  /// One sweep over all pairs, or quads. `walls`: whether the tile has any; for quads. Returns the largest
+  /// amount that one has moved.
   template <bool deep, bool quads, class Team>
   DESERT_HD float sweep(const Team& team, const PatchShift& shift, float* h, const float* ground,
-                        const float* drop) const {
+                        const float* drop, bool walls = false) const {
     const GapOmega omega = share;
     const auto copy_first = [=](int from, int to) DESERT_INLINE {
       team.for_each(side, [=](int y) DESERT_INLINE {
@@ -226,7 +228,7 @@ struct RelaxTile {
       }
       if constexpr (quads)
         QuadsOfPatches<lanes, deep, At>{
-            h, ground, drop, at, QuadShares<lanes>(shares, transposed), max_moved_by_patch}
+            h, ground, drop, at, QuadShares<lanes>(shares, transposed), max_moved_by_patch, walls}
             .relax();
       else
         PairsOfPatches<lanes, deep, At>{h, ground, drop, at, shares, max_moved_by_patch}.relax();
@@ -327,6 +329,15 @@ struct RelaxTile {
   DESERT_HD static float least(const Team& team, const float* of) {
     return float_from_bits(static_cast<std::uint32_t>(
         team.min_of(cells, [=](int n) DESERT_INLINE { return static_cast<int>(bits_of(of[n])); })));
+  }
+
+  /// Whether any cell of a tile with these drops is a wall: theirs is the greatest there is. What lies
+  /// between the groups of columns is no cell.
+  template <class Team>
+  DESERT_HD static bool has_walls(const Team& team, const float* drop) {
+    const auto bits = [](float value) DESERT_INLINE { return static_cast<int>(bits_of(value)); };
+    const auto below = [=](int n, int group) DESERT_INLINE { return -bits(drop[group * column_stride + n]); };
+    return team.min_of(patches, side * Patch::side, below) <= -bits(Units::wall);
   }
 
   template <class Team>

@@ -38,11 +38,12 @@ struct Units {
     return float_from_bits(bits_of(floor) +
                            ((static_cast<std::uint32_t>(h) - static_cast<std::uint32_t>(lowest)) >> shift));
   }
-  /// The top of the ground below the sand, or the lowest cell if that is higher, because no cell falls below
-  /// it.
+  /// The top of the ground below the sand; at most half a relief below the lowest cell. Down there floats lie
+  /// half a unit apart.
   DESERT_HD float ground(Quanta h, Quanta sand) const {
     const Quanta units = ((h - lowest) >> shift) - (sand >> shift);
-    return float_from_bits(bits_of(floor) + static_cast<std::uint32_t>(units > 0 ? units : 0));
+    const Quanta below = units > -relief / 2 ? 2 * units : -relief;
+    return float_from_bits(bits_of(floor) + static_cast<std::uint32_t>(units > 0 ? units : below));
   }
   /// Drop at repose over one cell. With 1 or more nothing slides, so it is limited to that.
   DESERT_HD float drop(float repose, float quanta_per_cell) const {

@@ -201,9 +201,10 @@ __device__ inline Range range_of_patch(PatchValues<Quanta>& height, PatchValues<
 }
 
 /// Loads a patch into shared memory, and returns the tile's range. `kept_ground` gets the ground; it may be
-/// null.
+/// null. `walls`: whether the patch has any.
 template <bool patch_aligned>
-__device__ Range load(const PatchLocation<patch_aligned>& patch, Shared& shared, Ground* kept_ground) {
+__device__ Range load(const PatchLocation<patch_aligned>& patch, Shared& shared, Ground* kept_ground,
+                      bool& walls) {
   const LevelView& level = patch.law.level;
   PatchValues<Quanta> height, sand;
   PatchValues<float> drop;
@@ -226,7 +227,6 @@ __device__ Range load(const PatchLocation<patch_aligned>& patch, Shared& shared,
         ground.values[n] = height.rows[row].values[n] - sand.rows[row].values[n];
     }
   }
-  bool walls;
   const Range range = range_of_block(shared, range_of_patch(height, sand, walls));
   const Units units(range.lowest, range.highest, level.quanta_per_cell);
   const int px = static_cast<int>(threadIdx.x) % patches, py = static_cast<int>(threadIdx.x) / patches;

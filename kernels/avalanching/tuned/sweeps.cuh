@@ -31,9 +31,10 @@ struct InRegisters {
   __device__ constexpr int operator()(int row, int column) const { return row * Patch::side + column; }
 };
 
-/// Relaxes the pairs, or quads, of this thread's patch. Returns the largest amount that one of them moves.
+/// Relaxes the pairs, or quads, of this thread's patch. `walls`: whether the tile has any; for quads. Returns
+/// the largest amount that one of them moves.
 template <bool deep, bool quads>
-__device__ __forceinline__ float sweep_patch(Shared& shared, const PatchShift& shift) {
+__device__ __forceinline__ float sweep_patch(Shared& shared, const PatchShift& shift, bool walls) {
   constexpr unsigned bytes = sizeof(float), row_bytes = PerCell::stride * bytes;
   const unsigned px = threadIdx.x % patches, py = threadIdx.x / patches;
   const unsigned next_x = (px + 1) % patches, next_y = (py + 1) % patches;
@@ -70,7 +71,8 @@ __device__ __forceinline__ float sweep_patch(Shared& shared, const PatchShift& s
   }
   float max_moved = 0.0f;
   if constexpr (quads)
-    QuadsOfPatches<1, deep, InRegisters>{h, ground, drop, {}, {shares, transposed}, &max_moved}.relax();
+    QuadsOfPatches<1, deep, InRegisters>{h, ground, drop, {}, {shares, transposed}, &max_moved, walls}
+        .relax();
   else
     PairsOfPatches<1, deep, InRegisters>{h, ground, drop, {}, shares, &max_moved}.relax();
 #pragma unroll
@@ -83,27 +85,27 @@ __device__ __forceinline__ float sweep_patch(Shared& shared, const PatchShift& s
 enum class ShiftCode { shared_by_shifts, one_per_shift };
 
 template <bool deep, bool quads, ShiftCode code>
-__device__ float sweep_patch(Shared& shared, const PatchShift& shift) {
+__device__ float sweep_patch(Shared& shared, const PatchShift& shift, bool walls) {
   static_assert(Patch::side == 4);
   if constexpr (code == ShiftCode::one_per_shift) switch (shift.x) {
       case 0:
-        return sweep_patch<deep, quads>(shared, PatchShift(0));
+        return sweep_patch<deep, quads>(shared, PatchShift(0), walls);
       case 1:
-        return sweep_patch<deep, quads>(shared, PatchShift(1));
+        return sweep_patch<deep, quads>(shared, PatchShift(1), walls);
       case 2:
-        return sweep_patch<deep, quads>(shared, PatchShift(2));
+        return sweep_patch<deep, quads>(shared, PatchShift(2), walls);
       default:
-        return sweep_patch<deep, quads>(shared, PatchShift(3));
+        return sweep_patch<deep, quads>(shared, PatchShift(3), walls);
     }
-  return sweep_patch<deep, quads>(shared, shift);
+  return sweep_patch<deep, quads>(shared, shift, walls);
 }
 
 /// Sweeps over the loaded tile until it is at rest or may stop. Returns whether anything moved.
 template <bool deep, bool quads, ShiftCode code>
-__device__ bool relax(const RelaxTile& law, Shared& shared, const Units& units) {
+__device__ bool relax(const RelaxTile& law, Shared& shared, const Units& units, bool walls) {
   const float threshold = units.drop(law.continue_threshold, law.level.quanta_per_cell);
   return law.relax([&](int n, const PatchShift& shift) {
-    const float max_moved = sweep_patch<deep, quads, code>(shared, shift);
+    const float max_moved = sweep_patch<deep, quads, code>(shared, shift, walls);
     const bool any = __any_sync(0xffffffffu, max_moved > 0.0f),
                any_much = __any_sync(0xffffffffu, max_moved > threshold);
     if (threadIdx.x % 32 == 0) shared.moved[n % 2][threadIdx.x / 32] = any_much ? 2 : (any ? 1 : 0);

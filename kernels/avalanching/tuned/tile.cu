@@ -56,13 +56,17 @@ __global__ __launch_bounds__(threads, resident_tiles) void relax_tiles_kernel(Re
   const PatchLocation<patch_aligned> patch(law);
   Ground* kept_ground = nullptr;
   if constexpr (!has_no_follow_up) kept_ground = &ground;
-  const Range range = load(patch, shared, kept_ground);
-  __syncthreads();
+  bool walls;
+  const Range range = load(patch, shared, kept_ground, walls);
+  if constexpr (quads)
+    walls = __syncthreads_or(walls) != 0;
+  else
+    __syncthreads();
   const Units units(range.lowest, range.highest, law.level.quanta_per_cell);
   bool changed = law.from_coarse.sand_after;
   if (range.lowest < wall_height)
-    changed |= range.deep() ? relax<true, quads, code>(law, shared, units)
-                            : relax<false, quads, code>(law, shared, units);
+    changed |= range.deep() ? relax<true, quads, code>(law, shared, units, walls)
+                            : relax<false, quads, code>(law, shared, units, walls);
   if (changed)
 #pragma unroll
     for (int row = 0; row < Patch::side; ++row)

@@ -315,6 +315,24 @@ TEST(Schedule, OfGoodHasMoreSweepsOnSmallGrids) {
   }
 }
 
+/// So that a step takes no longer by the gradient than by eight neighbours.
+TEST(Schedule, ByTheGradientHasFewerLastSweeps) {
+  AvalanchingParameters p;
+  for (const int side : {512, 1024}) {
+    const Grid grid{side, side, 1, true, true};
+    p.scheme = AvalancheScheme::multilevel;
+    const avalanching::Schedule by_neighbours = avalanching::schedule(p, grid);
+    p.scheme = AvalancheScheme::gradient;
+    const avalanching::Schedule plan = avalanching::schedule(p, grid);
+    EXPECT_EQ(plan.first_sweeps, by_neighbours.first_sweeps);
+    EXPECT_LE(plan.last_passes, by_neighbours.last_passes);
+    EXPECT_LT(plan.fine_sweeps(), by_neighbours.fine_sweeps());
+    p.last_passes = 4;
+    EXPECT_EQ(avalanching::schedule(p, grid).last_passes, 4);
+    p.last_passes = 0;
+  }
+}
+
 TEST(Restrict, AveragesFourChildrenRoundedDownAndKeepsTheSteepestAngle) {
   Hierarchy h;
   h.sand = {1, 2, 0, 0, 3, 5, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0};
