@@ -127,7 +127,7 @@ struct Workspace {
   std::vector<Level> coarse;  ///< coarse[0] has cells twice as wide as the terrain's
   Buffer<float> share;        ///< with given, received: synchronous schemes only
   Buffer<Quanta> given, received;
-  ActiveTiles active_tiles;  ///< scheme multilevel with quality converged only
+  ActiveTiles active_tiles;  ///< schemes with levels, quality converged only
   int iterations = 0;        ///< fine sweeps of the last step that the host has counted
   /// Fine sweeps of all steps that the device has counted (relax_until_converged()).
   long long counted_iterations() const {

@@ -42,7 +42,8 @@ struct Quad {
 struct SlidingShares {
   float p, q, t;
 
-  /// `drops`: the sum of the four cells' drops at repose over one cell. `least`: the share of what keeps.
+  /// `drops`: the sum of the four cells' drops at repose over one cell. `least`: the share where nothing
+  /// slides.
   template <bool deep>
   DESERT_HD static SlidingShares of(const Quad& quad, float drops, float least) {
     const float p = quad.p, q = quad.q, t = quad.t;
@@ -65,9 +66,9 @@ struct SlidingShares {
   DESERT_HD static float over(float squares, float drops, float least) {
     return fast_max(fused(-drops, inverse_steepness(squares), 1.0f), least);
   }
-  /// 1/√(8 x) by half the exponent and one step of Newton's, within 7e-4, with the constants of the least
-  /// error (Kadlec 2010); the same bits on host and device. It is some 1e19 for 0. With x = 2 l² g² it is ¼
-  /// over the drop that g has over one cell.
+  /// 1/√(8 x) by half the exponent and one step of Newton's, with constants that keep the error within 7e-4;
+  /// the same bits on host and device. It is some 1e19 for 0. With x = 2 l² g² it is ¼ over the drop that g
+  /// has over one cell.
   DESERT_HD static float inverse_steepness(float x) {
     constexpr float scale = 0.35355339f * 0.703952253f;
     const float y = float_from_bits(0x5f1ffff9u - (bits_of(x) >> 1));
@@ -159,7 +160,7 @@ struct QuadsOfPatches {
   }
 
   static constexpr float of_twist = 1.0f / 3.0f;
-  static constexpr float negligible = closed_gap;  ///< share of what keeps
+  static constexpr float negligible = closed_gap;  ///< share where nothing slides
   /// As with_odd_mantissa(), for shares that are less than 1 and not 0.
   DESERT_HD static float odd(float share) { return float_from_bits(bits_of(share) | 1u); }
 
@@ -176,11 +177,11 @@ struct QuadsOfPatches {
       }
       const SlidingShares shares_of =
           SlidingShares::of<deep>(quad, (drop_a[n] + drop_b[n]) + (drop_c[n] + drop_d[n]), negligible);
-      // Heights are rounded to whole units by the subtraction; odd shares see to it that each unit that
+      // Heights are rounded to whole units by each fused operation; odd shares see to it that each unit that
       // leaves one cell enters another.
       const float e_p = odd(w * shares_of.p), e_q = odd(w * shares_of.q), e_t = odd(w * shares_of.t);
       const float t = of_twist * quad.t;
-      float left_a = fused(-e_p, quad.p, at_a), left_b = fused(-e_q, quad.q, at_b);
+      const float left_a = fused(-e_p, quad.p, at_a), left_b = fused(-e_q, quad.q, at_b);
       if constexpr (deep) {
         const float left_c = fused(e_q, quad.q, at_c), left_d = fused(e_p, quad.p, at_d);
         h_a[n] = fused(-e_t, t, left_a), h_d[n] = fused(-e_t, t, left_d);

@@ -241,11 +241,12 @@ class Costmap(MapTest):
 
     def wait_for_present_costs(self):
         """Until updates have led to them; else AssertionError says how many messages did not come, and which did."""
-        end = time.monotonic() + 60 * PATIENCE
-        while assemble(self.base, self.since_base()) != self.costs():
-            self.assertLess(time.monotonic(), end, "not the present costs; of %d messages since %s came %s" % (
-                self.messages(), self.base.header.stamp, [u.header.stamp.to_sec() for u in self.updates.messages[-70:]]))
-            time.sleep(0.01)
+        try:
+            wait_until(lambda: assemble(self.base, self.since_base()) == self.costs(), "the present costs")
+        except AssertionError as error:
+            raise AssertionError("not the present costs; of %d messages since %s came %s" % (
+                self.messages(), self.base.header.stamp,
+                [u.header.stamp.to_sec() for u in self.updates.messages[-70:]])) from error
 
     def test_a_rate_holds_changes_back(self):
         """Its period is so long that all of the test is soon after the terrain was replaced: changes come as whole maps."""
