@@ -36,8 +36,9 @@ void relax(E& exec, const LevelView& level, Prolong from_coarse, const Passes& p
     const Tiles tiles{level.grid, seam_offset(step_count, pass)};
     const bool is_last = pass + 1 == p.last;
     const GapOmega share{p.share, is_last ? p.share * p.edge_factor : p.share};
-    const RelaxTile law{tiles,   level,        from_coarse, share, p.sweeps, p.continue_threshold,
-                        nullptr, p.by_gradient};
+    const RelaxTile law{tiles,   level,         from_coarse,
+                        share,   p.sweeps,      p.continue_threshold,
+                        nullptr, p.by_gradient, first_shift(step_count, pass, p.by_gradient)};
     if (is_last)
       relax_tiles(exec, law, then);
     else
@@ -140,6 +141,7 @@ void relax_until_converged(E& exec, const LevelView& fine, const AvalanchingPara
                            std::uint64_t step_count, Workspace& work) {
   using After = CheckConvergence::After;
   const Schedule plan = schedule(p, fine.grid);
+  const bool by_gradient = p.scheme == AvalancheScheme::gradient;
   const float share = omega_in_rounds(p.scheme) * p.transfer;
   const ActiveTiles& active = work.active_tiles;
   Progress* const progress = active.progress.data();
@@ -163,7 +165,8 @@ void relax_until_converged(E& exec, const LevelView& fine, const AvalanchingPara
                               max_sweeps_in_rounds,
                               0.0f,
                               round.flags_of_pass(n),
-                              p.scheme == AvalancheScheme::gradient},
+                              by_gradient,
+                              first_shift(seams, plan.fine_passes() + n, by_gradient)},
                     NoFollowUp{});
       update_active_tiles(exec, fine, p, round, true, active);
       check(After::round, passes_per_round * max_sweeps_in_rounds);

@@ -37,12 +37,14 @@ Schedule schedule(const AvalanchingParameters& p, const Grid& grid) {
   constexpr int few_cells = 1 << 18;
   Schedule plan = preset(p.quality);
   const bool by_gradient = p.scheme == AvalancheScheme::gradient;
-  if (p.last_passes > 0)
+  if (p.last_passes > 0) {
     plan.last_passes = p.last_passes;
-  else if (p.quality == AvalancheQuality::good && grid.cells() <= few_cells)
-    plan.last_sweeps = by_gradient ? 6 : 7, plan.two_pass_levels = 0, plan.coarse_share = 0.6f;
-  else if (p.quality == AvalancheQuality::good && by_gradient)
+  } else if (p.quality == AvalancheQuality::good && grid.cells() <= few_cells) {
+    plan.last_sweeps = 7, plan.two_pass_levels = 0, plan.coarse_share = 0.6f;
+    if (by_gradient) plan.first_sweeps = 4, plan.last_sweeps = 6;
+  } else if (p.quality == AvalancheQuality::good && by_gradient) {
     plan.last_passes = 2;
+  }
   return plan;
 }
 

@@ -41,16 +41,13 @@ constexpr int max_sweeps_while_sliding = 8;
 /// Shift of a sweep's patches to the east and to the north [cells].
 struct PatchShift {
   int x, y;
+  bool transposed;  ///< whether quads are relaxed in transposed order (quads.hpp)
 
-  /// For the nth sweep of a pass whose tiles begin at −offset. The tiles of successive passes lie 16 cells
-  /// apart (seam_offsets in avalanching.hpp), and their sequences of shifts begin two sweeps apart.
-  DESERT_HD PatchShift(int n, int offset) : PatchShift(n + offset / 16 * 2) {}
-  DESERT_HD explicit constexpr PatchShift(int n)
-      : x(n & (Patch::side - 1)), y((Patch::side - x) & (Patch::side - 1)) {
+  /// `n`: the shift to the east, modulo the side of a patch.
+  DESERT_HD constexpr PatchShift(int n, bool transposes_quads)
+      : x(n & (Patch::side - 1)), y((Patch::side - x) & (Patch::side - 1)), transposed(transposes_quads) {
     static_assert(Patch::side == 4);
   }
-  /// Whether quads are relaxed in transposed order (quads.hpp): in every other sweep.
-  DESERT_HD bool transposes_quads() const { return x % 2 != 0; }
 };
 
 /// The share ω of an excess that slides across the nth gap between columns, or between rows, of a tile. Gap n
@@ -97,6 +94,9 @@ struct RelaxTile {
   float continue_threshold;              ///< [cell sizes]
   const Quanta* active_flags = nullptr;  ///< flags, 0 for tiles to skip; null: relax all
   bool by_gradient = false;              ///< quads in place of pairs
+  /// Of the patches, in the first sweep; each further one shifts them by one more. Every other sweep relaxes
+  /// transposed quads.
+  int first_shift = 0;
 
   DESERT_HD bool is_skipped(int column, int row) const {
     return active_flags && active_flags[row * tiles.columns() + column] == 0;
@@ -116,7 +116,7 @@ struct RelaxTile {
   DESERT_HD bool relax(const Sweep& sweep) const {
     bool moved = false, moved_before = true;
     for (int n = 0;; ++n) {
-      const Moved now = sweep(n, PatchShift(n, tiles.offset));
+      const Moved now = sweep(n, PatchShift(first_shift + n, (first_shift / 2 + n) % 2 != 0));
       const bool moves = now != Moved::nothing;
       moved = moved || moves;
       if (!moves && !moved_before) break;
@@ -218,7 +218,7 @@ struct RelaxTile {
     const float max_moved = team.max_of(patches * patches / Team::patch_lanes, [=](int i) DESERT_INLINE {
       constexpr int lanes = Team::patch_lanes, vectors = patches / lanes;
       const int patch_row = i / vectors, first = i % vectors * lanes;
-      const bool transposed = quads && shift.transposes_quads();
+      const bool transposed = quads && shift.transposed;
       const At at{shift, patch_row, first, transposed};
       Shares<lanes> shares;
       float max_moved_by_patch[lanes] = {};

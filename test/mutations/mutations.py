@@ -38,8 +38,14 @@ MUTATIONS = [Mutation(*row) for row in (
 
     # ---- avalanches by the gradient
     ("quads_in_one_order", "kernels/avalanching/tile.hpp",
-     "return x % 2 != 0; }", "return x > 4; }",
+     "(first_shift / 2 + n) % 2 != 0", "n > 99",
      "quads slide as fast along one axis as along the other", "kernels_unit *AvalanchingTile.OfLooseSand*"),
+    ("quads_blind_to_chessboards", "kernels/avalanching/quads.hpp",
+     "limited(w * twist, most)", "limited(w * twist, e_t * fabsf(twist) + 0.0f * most)",
+     "quads level what alternates from cell to cell", "kernels_unit *AvalanchingTile.OfQuadsLevels*"),
+    ("quads_skipped_by_two_passes", "kernels/avalanching/avalanching.hpp",
+     "(2 * (step_count + n)", "(4 * (step_count + n)",
+     "two passes relax every quad", "kernels_unit *AvalanchingTile.PassesOverEveryQuad*"),
     ("quads_by_the_least_repose", "kernels/avalanching/quads.hpp",
      "(drop_a[n] + drop_b[n]) + (drop_c[n] + drop_d[n]), negligible",
      "4.0f * fast_min(fast_min(drop_a[n], drop_b[n]), fast_min(drop_c[n], drop_d[n])), negligible",

@@ -87,7 +87,8 @@ std::vector<Quanta> TileField::relaxed(Exec& exec, int offset, int sweeps, bool 
                                    sweeps,
                                    continue_threshold,
                                    or_null(device_flags, active_flags),
-                                   by_gradient};
+                                   by_gradient,
+                                   first_shift};
   with_backend(exec, [&](auto& e) {
     by_law ? avalanching::relax_tiles_reference(e, law)
            : avalanching::relax_tiles(e, law, avalanching::NoFollowUp{});
@@ -96,7 +97,7 @@ std::vector<Quanta> TileField::relaxed(Exec& exec, int offset, int sweeps, bool 
 }
 
 avalanching::RelaxTile TileField::four_sweeps(DeviceField& device, int offset) const {
-  return {{grid, offset}, device.level, {}, {0.65f, 0.4f}, 4, 0.2f, nullptr, by_gradient};
+  return {{grid, offset}, device.level, {}, {0.65f, 0.4f}, 4, 0.2f, nullptr, by_gradient, first_shift};
 }
 
 std::vector<std::uint32_t> TileField::relaxed_and_restricted(Exec& exec, int offset) const {

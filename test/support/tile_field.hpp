@@ -20,6 +20,7 @@ struct TileField {
   std::vector<float> obstacle;  ///< may be empty
   std::vector<float> repose;
   bool by_gradient = false;                         ///< quads in place of pairs, with ω ≤ ¾
+  int first_shift = 0;                              ///< as in RelaxTile
   std::vector<Quanta> active_flags;                 ///< a tile each; may be empty: all are
   std::vector<Quanta> coarse_before, coarse_after;  ///< may be empty; of the next coarser grid
 

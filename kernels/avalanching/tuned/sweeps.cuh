@@ -45,7 +45,7 @@ __device__ __forceinline__ float sweep_patch(Shared& shared, const PatchShift& s
     columns[n] = x % Patch::side * (side * row_bytes) + (x < Patch::side ? px : next_x) * bytes;
     rows[n] = y % Patch::side * row_bytes + (y < Patch::side ? py : next_y) * (Patch::side * row_bytes);
   }
-  const bool transposed = quads && shift.transposes_quads();  // the patch lies so in the registers
+  const bool transposed = quads && shift.transposed;  // the patch lies so in the registers
 #pragma unroll
   for (int n = 0; n < Patch::side; ++n)
     if (transposed) {
@@ -89,13 +89,13 @@ __device__ float sweep_patch(Shared& shared, const PatchShift& shift, bool walls
   static_assert(Patch::side == 4);
   if constexpr (code == ShiftCode::one_per_shift) switch (shift.x) {
       case 0:
-        return sweep_patch<deep, quads>(shared, PatchShift(0), walls);
+        return sweep_patch<deep, quads>(shared, PatchShift(0, shift.transposed), walls);
       case 1:
-        return sweep_patch<deep, quads>(shared, PatchShift(1), walls);
+        return sweep_patch<deep, quads>(shared, PatchShift(1, shift.transposed), walls);
       case 2:
-        return sweep_patch<deep, quads>(shared, PatchShift(2), walls);
+        return sweep_patch<deep, quads>(shared, PatchShift(2, shift.transposed), walls);
       default:
-        return sweep_patch<deep, quads>(shared, PatchShift(3), walls);
+        return sweep_patch<deep, quads>(shared, PatchShift(3, shift.transposed), walls);
     }
   return sweep_patch<deep, quads>(shared, shift, walls);
 }

@@ -119,7 +119,7 @@ TEST(Isotropy, ASmallHeapInStrongWindDoesSoBySchemeGradient) {
   EXPECT_LT(ratio.width, 1.05);
 }
 
-/// The aspects of a barchan's slip face under continuum transport, by scheme: the largest share of an aspect
+/// The aspects of a barchan's slip face in five states under continuum transport, by scheme: the largest share of an aspect
 /// of 10 degrees times their number within its arc; 1 if all have the same share.
 double unevenness_of_slip_face(AvalancheScheme scheme) {
   Scenario s;
@@ -137,19 +137,22 @@ double unevenness_of_slip_face(AvalancheScheme scheme) {
   cone.height = 9;
   s.terrain = {cone};
   Running scene(s);
-  const Field top = scene.run(3000).field(Layer::elevation);
   std::array<int, 36> cells{};
   int all = 0;
-  for (int y = 1; y + 1 < top.height; ++y)
-    for (int x = 1; x + 1 < top.width; ++x) {
-      const double down_x = (top.at(x - 1, y) - top.at(x + 1, y)) / 2,
-                   down_y = (top.at(x, y - 1) - top.at(x, y + 1)) / 2;
-      if (std::hypot(down_x, down_y) < std::tan(28 * degree)) continue;
-      const double aspect = std::atan2(down_y, down_x) / degree + 180;
-      ++cells[static_cast<std::size_t>(std::min(aspect / 10, 35.0))];
-      ++all;
-    }
-  EXPECT_GT(all, 150) << "cells of a slip face";
+  scene.run(2000);
+  for (int state = 0; state < 5; ++state) {
+    const Field top = scene.run(250).field(Layer::elevation);
+    for (int y = 1; y + 1 < top.height; ++y)
+      for (int x = 1; x + 1 < top.width; ++x) {
+        const double down_x = (top.at(x - 1, y) - top.at(x + 1, y)) / 2,
+                     down_y = (top.at(x, y - 1) - top.at(x, y + 1)) / 2;
+        if (std::hypot(down_x, down_y) < std::tan(28 * degree)) continue;
+        const double aspect = std::atan2(down_y, down_x) / degree + 180;
+        ++cells[static_cast<std::size_t>(std::min(aspect / 10, 35.0))];
+        ++all;
+      }
+  }
+  EXPECT_GT(all, 750) << "cells of five slip faces";
   int arc = 0, most = 0;
   for (const int n : cells) {
     arc += n > 0.01 * all;
@@ -161,9 +164,10 @@ double unevenness_of_slip_face(AvalancheScheme scheme) {
   return unevenness;
 }
 
-/// By eight neighbours it falls into planes, and two aspects have a third of its cells each.
+/// By eight neighbours it falls into planes, and two aspects have a third of its cells each. By the gradient
+/// shares fall evenly from downwind to the sides, and where the dune is highest, downwind, it is twice the mean.
 TEST(Isotropy, ASlipFaceHasAllAspectsOfItsArcBySchemeGradient) {
-  EXPECT_LT(unevenness_of_slip_face(AvalancheScheme::gradient), 2);
+  EXPECT_LT(unevenness_of_slip_face(AvalancheScheme::gradient), 2.2);
   EXPECT_GT(unevenness_of_slip_face(AvalancheScheme::multilevel), 3);
 }
 

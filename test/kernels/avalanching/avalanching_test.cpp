@@ -316,7 +316,7 @@ TEST(Schedule, OfGoodHasMoreSweepsOnSmallGrids) {
 }
 
 /// So that a step takes no longer by the gradient than by eight neighbours.
-TEST(Schedule, ByTheGradientHasFewerLastSweeps) {
+TEST(Schedule, ByTheGradientHasFewerSweeps) {
   AvalanchingParameters p;
   for (const int side : {512, 1024}) {
     const Grid grid{side, side, 1, true, true};
@@ -324,7 +324,7 @@ TEST(Schedule, ByTheGradientHasFewerLastSweeps) {
     const avalanching::Schedule by_neighbours = avalanching::schedule(p, grid);
     p.scheme = AvalancheScheme::gradient;
     const avalanching::Schedule plan = avalanching::schedule(p, grid);
-    EXPECT_EQ(plan.first_sweeps, by_neighbours.first_sweeps);
+    EXPECT_LE(plan.first_sweeps, by_neighbours.first_sweeps);
     EXPECT_LE(plan.last_passes, by_neighbours.last_passes);
     EXPECT_LT(plan.fine_sweeps(), by_neighbours.fine_sweeps());
     p.last_passes = 4;
