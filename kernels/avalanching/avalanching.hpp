@@ -110,9 +110,10 @@ constexpr Schedule preset(AvalancheQuality quality) {
   return {6, 8, 3, 1, 2, 0.3f, 0.6f, 0.6f, 1.0f};
 }
 
-/// The schedule of a quality. On small grids `good` takes more last sweeps, which cost next to nothing on a
-/// GPU, so that hardly any excess is left there. By the gradient it takes fewer sweeps, so that it takes no
-/// longer. A positive `last_passes` replaces the number of last passes, and selects the sweeps of large grids.
+/// The schedule of a quality. On small grids `good` takes more last sweeps, which cost next to nothing on
+/// a GPU, so that hardly any excess is left there. By the gradient it takes fewer sweeps, so that it
+/// takes no longer. A positive `last_passes` replaces the number of last passes, and selects the sweeps
+/// of large grids.
 Schedule schedule(const AvalanchingParameters& p, const Grid& grid);
 
 /// Buffers of a coarse level. The finest level works on the layers of the terrain.
@@ -150,10 +151,10 @@ inline int seam_offset(std::uint64_t step_count, int pass) {
   return seam_offsets[(5 * step_count + static_cast<std::uint64_t>(pass)) % seam_period];
 }
 
-/// RelaxTile::first_shift of a pass. Pairs of passes begin two sweeps apart: a tile in which two sweeps move
-/// nothing takes no more of them, and what lies across its patches waits for the next pass. Quads begin
-/// elsewhere in each step and in each pair of passes: if the same cells were always relaxed in the same order,
-/// two to three times as much thin sand would lie unevenly from cell to cell.
+/// RelaxTile::first_shift of a pass. Pairs of passes begin two sweeps apart: a tile in which two sweeps
+/// move nothing takes no more of them, and what lies across its patches waits for the next pass. Quads
+/// begin elsewhere in each step and in each pair of passes: if the same cells were always relaxed in the
+/// same order, two to three times as much thin sand would lie unevenly from cell to cell.
 inline int first_shift(std::uint64_t step_count, int pass, bool by_gradient) {
   const auto n = static_cast<std::uint64_t>(pass);
   return static_cast<int>((2 * (step_count + n) + (by_gradient ? step_count + n / 2 : 0)) % Patch::side);

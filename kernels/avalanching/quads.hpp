@@ -20,10 +20,11 @@
 /// have sand enough, and beside bare rock QuadSlides::limit() sees to it. On slopes that follow an axis and
 /// on those that follow a diagonal the same flux results, and a cone is round within 2 %.
 ///
-/// p and q are means over two rows and two columns, and level nothing that alternates from cell to cell across
-/// a slope, as the hourglass modes of finite elements with one point of integration (Flanagan & Belytschko
-/// 1981). The twist levels it. If e ⅓ t of it slid, e being small on most slopes, thin sand would be twice as
-/// uneven from cell to cell.
+/// p and q are means over two rows and two columns, and level nothing that alternates from cell to cell
+/// across a slope, as the hourglass modes of finite elements with one point of integration (Flanagan &
+/// Belytschko 1981). The twist levels it. If e ⅓ t of it slid, e being small on most slopes, thin sand
+/// would be twice as uneven from cell to cell.
+///
 /// A law that looks at each neighbour for itself (patch.hpp) lets a rough slope that faces along a diagonal
 /// move a fifth faster; tan θ of the donor alone, a tenth where it differs from cell to cell
 /// (doc/notebook/avalanching.md).

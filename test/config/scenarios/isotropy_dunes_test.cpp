@@ -119,8 +119,8 @@ TEST(Isotropy, ASmallHeapInStrongWindDoesSoBySchemeGradient) {
   EXPECT_LT(ratio.width, 1.05);
 }
 
-/// The aspects of a barchan's slip face in five states under continuum transport, by scheme: the largest share of an aspect
-/// of 10 degrees times their number within its arc; 1 if all have the same share.
+/// The aspects of a barchan's slip face in five states under continuum transport, by scheme: the largest
+/// share of an aspect of 10 degrees times their number within its arc; 1 if all have the same share.
 double unevenness_of_slip_face(AvalancheScheme scheme) {
   Scenario s;
   s.name = "test";
@@ -164,8 +164,9 @@ double unevenness_of_slip_face(AvalancheScheme scheme) {
   return unevenness;
 }
 
-/// By eight neighbours it falls into planes, and two aspects have a third of its cells each. By the gradient
-/// shares fall evenly from downwind to the sides, and where the dune is highest, downwind, it is twice the mean.
+/// By eight neighbours it falls into planes, and two aspects have a third of its cells each. By the
+/// gradient shares fall evenly from downwind to the sides, and where the dune is highest, downwind, it is
+/// twice the mean.
 TEST(Isotropy, ASlipFaceHasAllAspectsOfItsArcBySchemeGradient) {
   EXPECT_LT(unevenness_of_slip_face(AvalancheScheme::gradient), 2.2);
   EXPECT_GT(unevenness_of_slip_face(AvalancheScheme::multilevel), 3);

@@ -78,9 +78,9 @@ TEST_P(AvalanchingTile, OfOneQuadSlidesByItsGradient) {
   }
 }
 
-/// A plane a little over repose on which every other cell is higher, as on a chessboard: the diagonals of quads
-/// do not see that. Sweeps level nine tenths of it; in proportion to what slides of the plane it would be less
-/// than a third.
+/// A plane a little over repose on which every other cell is higher, as on a chessboard: the diagonals of
+/// quads do not see that. Sweeps level nine tenths of it; in proportion to what slides of the plane it
+/// would be less than half.
 TEST_P(AvalanchingTile, OfQuadsLevelsWhatAlternatesFromCellToCell) {
   constexpr int side = Tiles::side;
   TileField f;
@@ -361,8 +361,8 @@ TEST_P(AvalanchingTile, PassesOverEveryPairInTwoPasses) {
   }
 }
 
-/// The same of quads: holes of two by two cells. The passes of a step begin two sweeps apart, too, though each
-/// step's begin elsewhere.
+/// The same of quads: holes of two by two cells. The passes of a step begin two sweeps apart, too, though
+/// each step's begin elsewhere.
 TEST_P(AvalanchingTile, PassesOverEveryQuadInTwoPasses) {
   constexpr int side = Tiles::side, cells = 2 * side, some = 2 * Patch::side;  // patches repeat
   const auto inside = [](int first, int shift) {
