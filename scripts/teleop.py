@@ -16,6 +16,7 @@ import sys
 import termios
 import time
 import tty
+import warnings
 
 import rospy
 from geometry_msgs.msg import Twist
@@ -64,10 +65,18 @@ class Driver:
 
 
 class Terminal:
-    """The terminal gives each key at once and shows none of them, until the end, however it comes."""
+    """The terminal gives each key at once and shows none of them, until the end, however it comes.
+
+    A signal in SIGNALS is such an end, too. It is noticed between two commands: an exception out of its handler would
+    leave the one that is being sent in pieces.
+    """
+    SIGNALS = (signal.SIGTERM, signal.SIGHUP, signal.SIGINT)
 
     def __init__(self, descriptor):
         self.descriptor, self.before = descriptor, termios.tcgetattr(descriptor)
+        self.ended, end = os.pipe()
+        for number in self.SIGNALS:
+            signal.signal(number, lambda *_: os.write(end, b"."))
 
     def __enter__(self):
         tty.setcbreak(self.descriptor)  # Ctrl-C still interrupts
@@ -77,10 +86,13 @@ class Terminal:
         termios.tcsetattr(self.descriptor, termios.TCSADRAIN, self.before)
 
     def keys(self, seconds):
-        """Those that come within so many seconds; None when the terminal has gone."""
+        """Those that come within so many seconds; None when the terminal has gone, or after a signal."""
         try:
-            if not select.select([self.descriptor], [], [], seconds)[0]:
+            ready = select.select([self.descriptor, self.ended], [], [], seconds)[0]
+            if not ready:
                 return []
+            if self.ended in ready:
+                return None
             text = os.read(self.descriptor, 1024).decode(errors="ignore")
         except OSError:
             return None
@@ -98,6 +110,16 @@ def twist(forward, left):
     message = Twist()
     message.linear.x, message.angular.z = forward, left
     return message
+
+
+def advertise(topic):
+    """A publisher whose messages have left when publish() returns.
+
+    With a queue the last one, which stops the rover, is lost when the program ends before the queue's thread runs.
+    """
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", SyntaxWarning)  # no queue_size, as is meant here
+        return rospy.Publisher(topic, Twist)
 
 
 def drive(terminal, driver, publisher, period):
@@ -124,12 +146,12 @@ def main():
         print("teleop.py: the standard input is no terminal, so that there are no keys: start it in a terminal, not in the "
               "background and without a pipe", file=sys.stderr)
         return 2
-    for number in (signal.SIGTERM, signal.SIGHUP, signal.SIGINT):
-        signal.signal(number, lambda *_: sys.exit(0))  # so that what follows cleans up
+    for number in Terminal.SIGNALS:
+        signal.signal(number, lambda *_: sys.exit(0))  # while there is no master yet, say
     rospy.init_node("teleop", disable_signals=True)
     driver = Driver(positive("~speed", 0.2), positive("~turn", 0.4), positive("~hold", 1.0))
     period = 1 / positive("~rate", 10.0)
-    publisher = rospy.Publisher("cmd_vel", Twist, queue_size=1)
+    publisher = advertise("cmd_vel")
     print(__doc__.split("\n\n")[1] + "\n\nto " + publisher.resolved_name, flush=True)
     try:
         with Terminal(sys.stdin.fileno()) as terminal:
