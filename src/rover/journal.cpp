@@ -14,6 +14,7 @@
 #include "src/core/files.hpp"
 #include "src/core/log.hpp"
 #include "src/rover/state_file.hpp"
+#include "src/scenario/yaml_document.hpp"
 #include "src/scenario/yaml_parameters.hpp"
 
 namespace desert_sim {
@@ -152,11 +153,11 @@ RoverJournal read_rover_journal(const std::string& path) {
     const std::string where = path + ":" + std::to_string(number);
     try {
       if (number == 1)
-        read_header(YAML::Load(line), where, journal);
+        read_header(yaml::load_document(line), where, journal);
       else if (lines.eof())
         break;  // no newline at its end: it was cut off
       else
-        journal.events.push_back(event_of(YAML::Load(line)));
+        journal.events.push_back(event_of(yaml::load_document(line)));
     } catch (const YAML::Exception& e) {
       throw ConfigError(where + ": " + e.what());
     } catch (const ConfigError& e) {

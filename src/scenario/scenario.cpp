@@ -14,6 +14,7 @@
 #include "src/scenario/growth_curves.hpp"
 #include "src/scenario/rover_presets.hpp"
 #include "src/scenario/seed_parameter.hpp"
+#include "src/scenario/yaml_document.hpp"
 #include "src/scenario/yaml_lists.hpp"
 
 namespace desert_sim {
@@ -111,7 +112,7 @@ void apply_setting(YAML::Node root, const std::string& setting) {
   const std::string path = setting.substr(0, equals);
   YAML::Node value;
   try {
-    value = YAML::Load(setting.substr(equals + 1));
+    value = yaml::load_document(setting.substr(equals + 1));
   } catch (const YAML::Exception& e) {
     throw ConfigError("--set '" + setting + "': " + e.msg);
   }
@@ -156,11 +157,7 @@ Scenario parse_with_settings(const std::string& text, const std::string& source,
                              const Settings& settings) {
   YAML::Node root;
   try {
-    const std::vector<YAML::Node> documents = YAML::LoadAll(text);
-    if (documents.size() > 1)
-      throw ConfigError(source + ": has " + std::to_string(documents.size()) +
-                        " YAML documents, separated by --- (allowed: one)");
-    if (!documents.empty()) root = documents.front();
+    root.reset(yaml::load_document(text));
   } catch (const YAML::Exception& e) {
     throw ConfigError(source + ": line " + std::to_string(e.mark.line + 1) + ": " + e.msg);
   }

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "src/core/error.hpp"
+#include "src/scenario/yaml_document.hpp"
 
 namespace desert_sim::yaml_text {
 
@@ -36,7 +37,7 @@ std::string MarkedText::with(std::vector<Change> changes) const {
 
 YAML::Node parse(const std::string& text, const std::string& source) {
   try {
-    return YAML::Load(text);
+    return yaml::load_document(text);
   } catch (const YAML::Exception& e) {
     throw ConfigError(source + ": line " + std::to_string(e.mark.line + 1) + ": " + e.msg);
   }

@@ -10,6 +10,7 @@
 
 #include "src/core/files.hpp"
 #include "src/core/log.hpp"
+#include "src/scenario/yaml_document.hpp"
 #include "src/scenario/yaml_parameters.hpp"
 #include "src/simulation/commands/command_yaml.hpp"
 
@@ -100,7 +101,7 @@ Journal read_journal(const std::string& path) {
     if (file.eof()) break;  // no newline: the writer was killed in the middle of it
     YAML::Node node;
     try {
-      node = YAML::Load(text);
+      node = yaml::load_document(text);
     } catch (const YAML::Exception& e) {
       throw ConfigError(source + ": " + e.msg);
     }

@@ -7,6 +7,7 @@
 
 #include "kernels/micro_relief/ripple_size.hpp"
 #include "src/ros/conversion/messages.hpp"
+#include "src/scenario/yaml_document.hpp"
 #include "src/scenario/yaml_parameters.hpp"
 
 namespace desert_sim {
@@ -24,7 +25,7 @@ std::string text_of(const MicroReliefParameters& parameters) {
 
 void read_section(const std::string& text, MicroReliefParameters& parameters, ValidationErrors& errors) {
   try {
-    yaml::read_section(YAML::Load(text), "parameters", errors, parameters);
+    yaml::read_section(yaml::load_document(text), "parameters", errors, parameters);
   } catch (const YAML::Exception& e) {
     errors.add("parameters", e.what());
   }

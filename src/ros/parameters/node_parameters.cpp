@@ -11,6 +11,7 @@
 #include "src/ros/conversion/frames.hpp"
 #include "src/ros/support/private_parameters.hpp"
 #include "src/scenario/scenario_file.hpp"
+#include "src/scenario/yaml_document.hpp"
 #include "src/scenario/yaml_parameters.hpp"
 
 namespace desert_sim {
@@ -52,7 +53,7 @@ Settings read_settings(const YAML::Node& given, ValidationErrors& errors) {
   YAML::Node node = given;
   Settings settings;
   try {
-    if (given.IsScalar()) node.reset(YAML::Load(given.Scalar()));
+    if (given.IsScalar()) node.reset(yaml::load_document(given.Scalar()));
   } catch (const YAML::Exception& e) {
     errors.add("settings", yaml::node_text(given) + " is not a list: " + e.msg);
     return settings;

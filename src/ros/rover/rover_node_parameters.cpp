@@ -11,6 +11,7 @@
 #include "src/ros/support/private_parameters.hpp"
 #include "src/rover/rover_class.hpp"
 #include "src/scenario/scenario_file.hpp"
+#include "src/scenario/yaml_document.hpp"
 #include "src/scenario/yaml_parameters.hpp"
 
 namespace desert_sim {
@@ -19,7 +20,7 @@ namespace {
 
 YAML::Node yaml_of_file(const std::string& path) {
   try {
-    return YAML::Load(read_file(path));
+    return yaml::load_document(read_file(path));
   } catch (const YAML::Exception& e) {
     throw ConfigError(path + ": " + e.what());
   }

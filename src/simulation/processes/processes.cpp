@@ -49,11 +49,11 @@ const ProcessTable& process_table() {
 
 namespace {
 
-std::string list_of(const std::vector<Layer>& layers, const char* none) {
+std::string listing(const std::vector<Layer>& layers, const char* none) {
   return layers.empty() ? none : joined(layers, [](Layer layer) { return info(layer).name; });
 }
 
-std::string list_of(const std::vector<std::string>& words) {
+std::string listing(const std::vector<std::string>& words) {
   return joined(words, [](const std::string& word) { return "`" + word + "`"; });
 }
 
@@ -70,8 +70,8 @@ std::string describe_processes(const ProcessTable& table) {
          "writes | writes where in use |\n|---|---|---|---|---|---|---|\n";
   for (const Process& p : table.processes)
     out << "| `" << p.name << "` | " << p.source << " | [" << p.header << "](../" << p.header << ") | "
-        << list_of(p.parameters) << " | " << list_of(p.reads, "—") << " | " << list_of(p.writes, "—") << " | "
-        << list_of(p.writes_if_in_use, "—") << " |\n";
+        << listing(p.parameters) << " | " << listing(p.reads, "—") << " | " << listing(p.writes, "—") << " | "
+        << listing(p.writes_if_in_use, "—") << " |\n";
   out << "\nWhere a rule says that it is faster, two processes are done in one pass, with the same bits:\n\n";
   for (const FusedProcesses& f : table.fused)
     out << "- " << f.name << ": `" << f.first << "` and `" << f.second << "`.\n";
@@ -83,10 +83,10 @@ std::string describe_pipeline(const Pipeline& pipeline) {
   int n = 0;
   for (const Pipeline::Stage& stage : pipeline.stages()) {
     const Process& p = *stage.process;
-    out << ++n << ". " << p.name << " (" << p.header << ")\n     reads   " << list_of(p.reads, "nothing else")
-        << "\n     writes  " << list_of(p.writes, "angles of repose") << "\n";
+    out << ++n << ". " << p.name << " (" << p.header << ")\n     reads   " << listing(p.reads, "nothing else")
+        << "\n     writes  " << listing(p.writes, "angles of repose") << "\n";
     if (!p.writes_if_in_use.empty())
-      out << "     writes where in use  " << list_of(p.writes_if_in_use, "") << "\n";
+      out << "     writes where in use  " << listing(p.writes_if_in_use, "") << "\n";
     if (stage.workspace) out << "     keeps   " << stage.workspace->bytes() << " bytes\n";
   }
   const std::vector<std::string> fastest = pipeline.launch_names();
