@@ -12,15 +12,15 @@
 ///
 /// Schemes:
 ///
-///   multilevel      (default) One multigrid cycle a step. The fine grid is relaxed briefly, so that small
+///   multilevel      One multigrid cycle a step. The fine grid is relaxed briefly, so that small
 ///                   slides end where they are; ground and sand are restricted (averaged two by two) until
 ///                   cells are `coarsest_cell` wide, or four cells of the grid; then each level, from the
 ///                   coarsest to the finest, is relaxed, and its change prolonged to the four children of
 ///                   each cell. With quality `converged` more passes follow until the tolerance is met, which
 ///                   can be as low as 2e-4 (relax_until_converged()).
-///   gradient        The same cycle with one law for slopes of every aspect: sand slides where the gradient,
-///                   and not one of eight drops, exceeds the angle of repose (quads.hpp). Cones are round,
-///                   and slip faces have no planes.
+///   gradient        (default) The same cycle with one law for slopes of every aspect: sand slides where the
+///                   gradient, and not one of eight drops, exceeds the angle of repose (quads.hpp). Cones
+///                   are round, and slip faces have no planes.
 ///   sweeps          Synchronous sweeps (Jacobi) of the whole grid by the equations above; the reference.
 ///   taylor_keyser   Synchronous sweeps that release ¼ k_c of the largest drop, distributed by tangents; for
 ///                   comparison.

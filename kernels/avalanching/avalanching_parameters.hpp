@@ -16,7 +16,7 @@ constexpr const char* avalanche_qualities[] = {"fast", "good", "converged"};
 
 struct AvalanchingParameters {
   bool enabled = true;
-  AvalancheScheme scheme = AvalancheScheme::multilevel;
+  AvalancheScheme scheme = AvalancheScheme::gradient;
   AvalancheQuality quality = AvalancheQuality::good;
   float transfer = 1.0f;
   float coarsest_cell = 0.0f;
@@ -34,8 +34,8 @@ constexpr auto parameter_table(const AvalanchingParameters*) {
   return std::make_tuple(
       parameter("enabled", &P::enabled, "Whether steep sand slides."),
       parameter("scheme", &P::scheme, avalanche_schemes,
-                "How slides are computed: by eight neighbours (multilevel; sweeps and taylor_keyser for "
-                "comparison), or by the gradient, alike in every direction."),
+                "How slides are computed: by the gradient, alike in every direction, or by eight neighbours "
+                "(multilevel; sweeps and taylor_keyser for comparison)."),
       parameter("quality", &P::quality, avalanche_qualities,
                 "fast: few sweeps, good: more, and most of all on small grids; both more where much slides; "
                 "converged: until tolerance (also for sweeps)."),

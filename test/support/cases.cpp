@@ -1,5 +1,7 @@
 #include "test/support/cases.hpp"
 
+#include "kernels/avalanching/avalanching_parameters.hpp"
+
 namespace desert_sim::test {
 
 std::string grid_yaml(int width, int height, const std::string& boundary) {
@@ -22,7 +24,7 @@ std::vector<Case> process_cases(bool transforms) {
   for (const char* method : {"off", "adaptive_repose", "smoothing", "steepest"})
     add(std::string("reptation ") + method, terrain + wind + "reptation: {method: " + method +
                                                 ", strength: 0.4}\navalanching: {quality: fast}\n");
-  for (const char* scheme : {"multilevel", "sweeps", "taylor_keyser"})
+  for (const char* scheme : avalanche_schemes)
     for (const char* quality : {"fast", "good", "converged"})
       add(std::string("avalanching ") + scheme + " " + quality,
           terrain + wind + "avalanching: {scheme: " + scheme + ", quality: " + quality +

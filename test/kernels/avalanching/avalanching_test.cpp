@@ -296,6 +296,7 @@ TEST(ActiveTileFlags, HasTheSameTilesByCorners) {
 
 TEST(Schedule, OfGoodHasMoreSweepsOnSmallGrids) {
   AvalanchingParameters p;
+  p.scheme = AvalancheScheme::multilevel;
   const auto of = [&](int side, float cell_size) {
     return avalanching::schedule(p, Grid{side, side, cell_size, true, true});
   };

@@ -35,6 +35,7 @@ TEST_P(Column, SlidesToAHeapAtReposeWithMultilevel) {
   t.set_repose([&](int, int) { return tangent; });
   const long long volume = t.total(Layer::sand);
   AvalanchingParameters p;
+  p.scheme = AvalancheScheme::multilevel;
   p.quality = AvalancheQuality::converged;
   // Fine sweeps; a plain scheme is far from there after 12 500 (35.6 degrees).
   p.max_iterations = 6000;

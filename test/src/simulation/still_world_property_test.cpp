@@ -39,7 +39,7 @@ TEST_P(StillWorld, GentleSlopesStayWithoutWind) {
 }
 
 TEST_P(StillWorld, GentleSlopesStayWithEveryScheme) {
-  for (const char* scheme : {"multilevel", "sweeps", "taylor_keyser"})
+  for (const char* scheme : avalanche_schemes)
     expect_unmoved(
         "grid: {width: 70, height: 50, boundary: open}\nterrain: [noise: {layer: sand, low: 0, high: 6, "
         "scale: 40}]\n"

@@ -154,6 +154,8 @@ class Symmetry : public test::OnBackend {
  protected:
   static constexpr int steps = 20, seeds = 8;
 
+  void expect_symmetry_under_shifts_by_the_coarsest_tile(const std::string& scheme);
+
   /// Noise is the same whatever the seed, which is that of the dice.
   static std::string yaml(std::string world, const char* boundary, double direction, int seed) {
     const std::string noise = "noise: {";
@@ -325,13 +327,14 @@ TEST_P(Symmetry, OfOpenEdgesWithInflux) {
 }
 
 /// Closed tiles: shifts by the widest tile are exact, whatever the levels.
-TEST_P(Symmetry, OfMultilevelUnderShiftsByTheCoarsestTile) {
+void Symmetry::expect_symmetry_under_shifts_by_the_coarsest_tile(const std::string& scheme) {
   const std::string text =
       "grid: {width: 256, height: 256, cell_size: 1}\n"
       "terrain: [noise: {layer: bedrock, low: 0, high: 12, scale: 50}, noise: {layer: sand, low: 3, high: 9, "
       "scale: 40, seed: 2}]\n"
       "wind: {warping: false, projection: false, speed: 6, direction_deg: 30}\n"
-      "wind_shadow: {enabled: false}\navalanching: {scheme: multilevel, coarsest_cell: 4}\n";
+      "wind_shadow: {enabled: false}\navalanching: {coarsest_cell: 4, scheme: " +
+      scheme + "}\n";
   constexpr int size = 256, shift = 32 * 4;  // tile × 2^levels
   auto plain = simulation(text), other = simulation(text);
   Terrain& terrain = const_cast<Terrain&>(other->terrain());
@@ -351,6 +354,14 @@ TEST_P(Symmetry, OfMultilevelUnderShiftsByTheCoarsestTile) {
   EXPECT_TRUE(shifted(plain->terrain().raw_words(Layer::airborne_sand)) ==
               terrain.raw_words(Layer::airborne_sand))
       << "airborne_sand";
+}
+
+TEST_P(Symmetry, OfMultilevelUnderShiftsByTheCoarsestTile) {
+  expect_symmetry_under_shifts_by_the_coarsest_tile("multilevel");
+}
+
+TEST_P(Symmetry, OfGradientUnderShiftsByTheCoarsestTile) {
+  expect_symmetry_under_shifts_by_the_coarsest_tile("gradient");
 }
 
 DESERT_ON_EACH_BACKEND(Symmetry);

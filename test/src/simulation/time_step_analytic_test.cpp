@@ -8,17 +8,19 @@
 namespace desert_sim {
 namespace {
 
-/// A heap, from its elevation and the sand in the air.
+/// A heap, from the sand on the ground and in the air.
 struct Heap {
   double moved, spread, height;  ///< mean and standard deviation of the sand along the wind, top [m]
 };
 
-Heap blown_heap(Simulation& s, double x, int steps) {
+/// Without sand below `thinnest` [m].
+Heap blown_heap(Simulation& s, double x, int steps, float thinnest = 0) {
   test::run(s, steps);
   const auto sand = s.terrain().values(Layer::sand), air = s.terrain().values(Layer::airborne_sand);
   const int width = s.terrain().grid().width;
   double sum = 0, first = 0, second = 0;
   for (std::size_t i = 0; i < sand.size(); ++i) {
+    if (sand[i] + air[i] < thinnest) continue;
     const double depth = sand[i] + air[i],
                  along = static_cast<double>(i % static_cast<std::size_t>(width)) + 0.5 - x;
     sum += depth;
@@ -56,6 +58,8 @@ TEST_P(TimeStep, AHeapMovesAsFarAndKeepsItsShape) {
 }
 
 /// Where the wind's shadow followed the sand in each step, the heap moved 1.11, 1.37 and 1.43 times as far.
+/// The hundredth of the sand that has left the tips of its horns is not asked: it blows over bare ground, and
+/// may be anywhere.
 TEST_P(TimeStep, MuchLiftedSandSeesTheSameShelter) {
   const auto moved_at = [&](double dt) {
     auto s = simulation(
@@ -63,7 +67,7 @@ TEST_P(TimeStep, MuchLiftedSandSeesTheSameShelter) {
         "14, "
         "height: 7}]\nwind: {speed: 3, projection: false}\nsaltation: {lift: 0.5}\nrun: {time_step: " +
         std::to_string(dt) + "}\n");
-    return blown_heap(*s, 30, static_cast<int>(std::lround(20 / dt))).moved;
+    return blown_heap(*s, 30, static_cast<int>(std::lround(20 / dt)), 0.2f).moved;
   };
   const double whole = moved_at(1);
   for (const double dt : {2.0, 0.5, 0.25, 0.1}) EXPECT_NEAR(moved_at(dt), whole, 0.05 * whole) << "dt " << dt;
