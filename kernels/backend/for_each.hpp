@@ -29,6 +29,9 @@
 ///     law.load(line, place)             what does not depend on the line before; read ahead of its turn
 ///     law.pass(loaded, before, after)   finds in before(w, k) word w of the line before, k places further
 ///                                       on, and sets after(w) for all w; the result goes to law.store()
+///     law.complete(here)                only of a law that `completes`: once all places of a line are
+///                                       passed, sets here(w) for its last words by the first ones of its
+///                                       own and the two places beside, here(w, k)
 ///     law.store(line, place, result)    is called once for each cell
 ///     law.before_first(w, place)        what the first line finds
 ///     law.around()                      whether a line is a ring; if not,
@@ -58,6 +61,12 @@ template <class Law>
 struct CellsOfACall<Law, std::void_t<decltype(Law::cells_of_a_call)>> {
   static constexpr int value = Law::cells_of_a_call;
 };
+
+/// Law::completes, or false.
+template <class Law, class = void>
+struct CompletesLines : std::false_type {};
+template <class Law>
+struct CompletesLines<Law, std::void_t<decltype(Law::completes)>> : std::bool_constant<Law::completes> {};
 
 /// Combines a law for cells at least `margin` cells away from every edge of the grid with one for all others.
 template <class Inside, class Border>

@@ -294,6 +294,23 @@ DESERT_HD void pass_place(const Law& law, int line, int place, const Words& befo
   law.store(line, place, law.pass(law.load(line, place), before.from(place), after.from(place)));
 }
 
+template <class Law, class Words>
+DESERT_HD void complete_place(const Law& law, int place, const Words& words) {
+  law.complete(words.from(place));
+}
+
+/// The places first … end − 1 of a line that has been passed.
+template <class Law>
+void complete_line(const Law& law, int first, int end, const LineWords<typename Law::Word>& words) {
+  with_wide_instructions([&]() DESERT_INLINE {
+    const Law own = law;
+    const LineWords<typename Law::Word> passed = words;
+    const int begin = first, last = end;
+#pragma omp simd
+    for (int m = begin; m < last; ++m) complete_place(own, m, passed);
+  });
+}
+
 /// The places first … end − 1 of a line.
 template <class Law>
 void pass_line(const Law& law, int line, int first, int end, const LineWords<typename Law::Word>& before,
@@ -348,6 +365,11 @@ void for_each_line_in_turn(CpuExec& exec, int first, int end, int length, typena
       pass_line(law, n, from, to, before, after);
       fill_beyond(law, length, from, to, after);
 #pragma omp barrier
+      if constexpr (CompletesLines<Law>::value) {
+        complete_line(law, from, to, after);
+        fill_beyond(law, length, from, to, after);
+#pragma omp barrier
+      }
     }
   }
 }

@@ -211,10 +211,10 @@ struct LineBefore {
   int first, last;  ///< threads at the ends of a line that is not one, or of the block
 
   DESERT_HD typename Law::Word operator()(int word, int further = 0) const {
-    static_assert(Law::reach <= 3, "a ring of one place is passed three times");
     const int wanted = thread + further;
     if (ring) {
-      const int there = wrap_once(wrap_once(wrap_once(wanted, length), length), length);
+      int there = wanted;  // a ring of one place is passed as often as the law reaches
+      for (int n = 0; n < Law::reach; ++n) there = wrap_once(there, length);
       return words[word * pitch + there];
     }
     const int there = wanted < first ? first : wanted > last ? last : wanted;
@@ -230,6 +230,16 @@ struct LineAfter {
   int pitch;
 
   DESERT_HD Word& operator()(int word) const { return words[word * pitch]; }
+};
+
+/// The words of a line that has been passed, as law.complete() takes them.
+template <class Before, class Word>
+struct LinePassed {
+  Before beside;
+  LineAfter<Word> own;
+
+  DESERT_HD Word operator()(int word, int further) const { return beside(word, further); }
+  DESERT_HD Word& operator()(int word) const { return own(word); }
 };
 
 /// Each thread has a place of a line. What a line hands on lies in shared memory, and the loads of the next
@@ -266,11 +276,19 @@ __global__ void __launch_bounds__(longest_line_block)
       const int line = first + d;
       if (line >= block.end) break;
       static_assert(ahead % 2 == 0, "lines take turns with two parts of the memory");
-      const LineBefore<Law, ring> before{
-          law, memory + d % 2 * words * pitch, pitch, thread, length, first_thread, last_thread};
-      const auto result =
-          law.pass(loaded[d], before, LineAfter<Word>{memory + (1 - d % 2) * words * pitch + thread, pitch});
+      Word *const old_words = memory + d % 2 * words * pitch, *const new_words =
+                                                                  memory + (1 - d % 2) * words * pitch;
+      using Before = LineBefore<Law, ring>;
+      const auto of = [&](const Word* line_words) {
+        return Before{law, line_words, pitch, thread, length, first_thread, last_thread};
+      };
+      const LineAfter<Word> after{new_words + thread, pitch};
+      const auto result = law.pass(loaded[d], of(old_words), after);
       __syncthreads();
+      if constexpr (CompletesLines<Law>::value) {
+        law.complete(LinePassed<Before, Word>{of(new_words), after});
+        __syncthreads();
+      }
       loaded[d] = load(line + ahead);
       if (own) law.store(line, place, result);
     }

@@ -31,6 +31,18 @@ Prepare<inside, bare> prepare(const TerrainView& t, const StepInputs& in, const 
           SweepFields(work)};
 }
 
+template <bool inside>
+LinearGain<inside> linear_gain(const Grid& lines, const StepInputs& in, const Drift& drift,
+                               const Workspace& work) {
+  const float way = lines.cell_size * sqrtf(1.0f + drift.shift * drift.shift);
+  return {lines,
+          drift,
+          place_of_mean(way / static_cast<float>(saturation_length(in.continuum))),
+          work.level_gain.data(),
+          work.decay.data(),
+          work.gain.data()};
+}
+
 template <bool inside, bool bare>
 Settle<inside, bare> settle(const TerrainView& t, const StepInputs& in, const Downwind& order,
                             const Drift& drift, const Dice& dice, LedgerView ledger, const Workspace& work) {
@@ -62,6 +74,12 @@ void step(E& exec, const TerrainView& t, const StepInputs& in, const Dice& dice,
                 Bordered<Prepare<true, bare>, Prepare<false, bare>>{
                     t.grid, margin, prepare<true, bare>(t, in, order, drift, dice, ledger, work),
                     prepare<false, bare>(t, in, order, drift, dice, ledger, work)});
+  const Grid lines{order.length(), order.lines(), t.grid.cell_size, order.periodic_across(),
+                   order.periodic_along()};
+  for_each_cell(
+      exec, lines,
+      Bordered<LinearGain<true>, LinearGain<false>>{lines, margin, linear_gain<true>(lines, in, drift, work),
+                                                    linear_gain<false>(lines, in, drift, work)});
   const PassSand<true> inside{order, drift, dice[Roll::lift], SweepFields(work)};
   const PassSand<false> ends{order, drift, dice[Roll::lift], SweepFields(work)};
   for_each_line_in_turn(exec, 0, order.lines(), order.length(), work.lines.data(),

@@ -13,8 +13,12 @@
 ///
 ///   F_out = F_in e^(−λ) + q_s cos γ Δt/l (1 − e^(−λ)),   λ = l/(L_sat cos γ),   at most F_in + s
 ///
-/// with γ the angle between e and the axis of the sweep, which solves the equation for a q_s that is constant
-/// in the cell. The amounts are whole quanta, and what a cell hands on is exactly what the next line gets: no
+/// with γ the angle between e and the axis of the sweep, which solves the equation for a q_s that is linear
+/// in the cell, if it is that of the place at which e^(−(x_out − x)/L_sat) has its mean:
+///
+///   x − x_middle = l (½ coth ½λ − 1/λ)
+///
+/// The amounts are whole quanta, and what a cell hands on is exactly what the next line gets: no
 /// sand is lost. The undisturbed wind carries it from line to line; where e points to the side of that, by at
 /// most a cell a line, shares of what comes go to the neighbours in the line, and a ridge one cell wide loses
 /// sand to both. Sand that leaves over a periodic edge lies in the layer airborne_sand until the next step
@@ -57,12 +61,13 @@ float longest_step(const ContinuumParameters& p, const ShearStressParameters& st
                    float wind_speed);
 
 /// Words that a place of the sweep hands on, and how many places to the side these are found.
-constexpr int words_handed_on = 1, reach_of_words = 3;
+constexpr int words_handed_on = 2, reach_of_words = 4;
 
 /// Fields of a sweep, in its order of cells.
 struct Workspace {
   Buffer<float> lead;          ///< of τ, from a line to the next [cells]; in the order of the terrain
   Buffer<float> decay, gain;   ///< e^(−λ) [1], and what the second term hands on [quanta]
+  Buffer<float> level_gain;    ///< the latter with the q_s of the middle of the cell
   Buffer<std::uint32_t> turn;  ///< off the way of the undisturbed wind, as Turn
   Buffer<Quanta> lying;        ///< sand that can be taken up
   Buffer<Quanta> entering;     ///< sand that comes over the edge of the grid

@@ -25,7 +25,8 @@ float longest_step(const ContinuumParameters& p, const ShearStressParameters& st
 Workspace make_workspace(Exec& exec, const Grid& grid) {
   const auto cells = static_cast<std::size_t>(grid.cells());
   Workspace work;
-  for (Buffer<float>* buffer : {&work.lead, &work.decay, &work.gain}) *buffer = Buffer<float>(exec, cells);
+  for (Buffer<float>* buffer : {&work.lead, &work.decay, &work.gain, &work.level_gain})
+    *buffer = Buffer<float>(exec, cells);
   for (Buffer<Quanta>* buffer : {&work.lying, &work.entering, &work.change, &work.out})
     *buffer = Buffer<Quanta>(exec, cells);
   work.turn = Buffer<std::uint32_t>(exec, cells);
@@ -36,8 +37,8 @@ Workspace make_workspace(Exec& exec, const Grid& grid) {
 }
 
 std::size_t Workspace::bytes() const {
-  return lead.bytes() + decay.bytes() + gain.bytes() + turn.bytes() + lying.bytes() + entering.bytes() +
-         change.bytes() + out.bytes() + over_ends.bytes() + lines.bytes();
+  return lead.bytes() + decay.bytes() + gain.bytes() + level_gain.bytes() + turn.bytes() + lying.bytes() +
+         entering.bytes() + change.bytes() + out.bytes() + over_ends.bytes() + lines.bytes();
 }
 
 }  // namespace desert_sim::continuum

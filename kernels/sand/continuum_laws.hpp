@@ -4,43 +4,15 @@
 #include "kernels/backend/for_each.hpp"
 #include "kernels/field/dice.hpp"
 #include "kernels/sand/continuum.hpp"
+#include "kernels/sand/continuum_shares.hpp"
 #include "kernels/sand/saltation_inputs.hpp"
 #include "kernels/wind/downwind.hpp"
 
 namespace desert_sim::continuum {
 
-using wind::Downwind;
-
-/// parts/2³² of an amount that is not negative, rounded down.
-DESERT_HD Quanta share(Quanta of, std::uint32_t parts) {
-  return static_cast<Quanta>(multiply_high(static_cast<std::uint32_t>(of), parts));
-}
-
-/// Shares of what comes to a place that are turned to its neighbours in the line: to the one after it, to the
-/// one before it, or, from a ridge, to both.
-struct Turn {
-  std::uint32_t both;  ///< before << 16 | after [2⁻¹⁶]
-
-  /// Of negative ones nothing is turned.
-  DESERT_HD static Turn of(float after, float before) {
-    constexpr float most = 65535.0f / 65536.0f;
-    const float to_after = clamp(after, 0.0f, most), to_before = clamp(before, 0.0f, most - to_after);
-    return {static_cast<std::uint32_t>(static_cast<int>(to_before * 65536.0f)) << 16 |
-            static_cast<std::uint32_t>(static_cast<int>(to_after * 65536.0f))};
-  }
-  /// [cells]
-  DESERT_HD float mean() const {
-    return (static_cast<float>(static_cast<int>(both & 65535u)) -
-            static_cast<float>(static_cast<int>(both >> 16))) /
-           65536.0f;
-  }
-  DESERT_HD Quanta after(Quanta all) const { return share(all, both << 16); }
-  DESERT_HD Quanta before(Quanta all) const { return share(all, both & 0xffff0000u); }
-};
-
 /// Fields of the workspace, as laws take them.
 struct SweepFields {
-  float *lead, *decay, *gain;
+  float *lead, *decay, *gain, *level_gain;
   std::uint32_t* turn;
   Quanta *lying, *entering, *change, *out, *over_ends;
 
@@ -48,35 +20,13 @@ struct SweepFields {
       : lead(work.lead.data()),
         decay(work.decay.data()),
         gain(work.gain.data()),
+        level_gain(work.level_gain.data()),
         turn(work.turn.data()),
         lying(work.lying.data()),
         entering(work.entering.data()),
         change(work.change.data()),
         out(work.out.data()),
         over_ends(work.over_ends.data()) {}
-};
-
-/// The way of the undisturbed wind from a line to the next: to a place and the one after it.
-struct Drift {
-  int cells;             ///< to the first of the two, from the cell's own place
-  std::uint32_t beyond;  ///< share of the second one [2⁻³²]
-  float share_beyond;    ///< [1]
-  float shift;           ///< [cells a line], at most 1
-  // Steps from a cell to the next place of its line, and to the next line [cells]. Kept as numbers: compilers
-  // would make choices between loads of what Downwind says, and vectorise no loop with such a choice.
-  int across_x, across_y, forward_x, forward_y;
-
-  Drift(const Downwind& order, wind::Vector above)
-      : shift(order.shift(above.x, above.y)),
-        across_x(order.across_x()),
-        across_y(order.across_y()),
-        forward_x(order.forward_x()),
-        forward_y(order.forward_y()) {
-    const int fixed_point = to_fixed_point(shift);
-    cells = fixed_point >> 16;
-    beyond = static_cast<std::uint32_t>(fixed_point) << 16;
-    share_beyond = fraction(fixed_point);
-  }
 };
 
 /// Where the stress leads from a cell to the next line [cells]; where there is none, where the wind does.
@@ -147,6 +97,12 @@ struct Prepare {
     const float beside = to.lead[sample(x + side * d_x, y + side * d_y)];
     return 0.25f * (here + beside + from_upwind(0) + from_upwind(side));
   }
+  /// Where sand leads through the middle of a cell [cells a line], as far as it may be turned. Where it turns
+  /// is a matter of the faces upwind, half a line before; the flux through the cell is not.
+  DESERT_HD float through(float shift, float rise, float per_rise) const {
+    const float there = downhill(shift, per_rise / sqrtf(1.0f + shift * shift) * rise);
+    return clamp(there, drift.shift - 1.0f, drift.shift + 1.0f);
+  }
   /// What turns off the way of the undisturbed wind, by the stress and, `per_rise` = √(Θ_t/Θ)/μ, by the fall
   /// of the ground across it, both at the faces between places: a ridge of one cell would have no slope
   /// otherwise. `slope_along`: from line to line.
@@ -176,12 +132,14 @@ struct Prepare {
     const float q = dry > 0.0f ? flux(shields, at_threshold / dry) : 0.0f;
 
     const float shift = to.lead[i], per_rise = sqrtf(flux.threshold / shields) * per_friction;
-    const Turn turned = turn(x, y, shift, slope_along, shields > flux.threshold ? per_rise : 0.0f);
-    const float across = drift.shift + turned.mean(),
+    const float to_the_fall = shields > flux.threshold ? per_rise : 0.0f;
+    const float slope_across =
+        static_cast<float>(drift.across_x) * slope_x + static_cast<float>(drift.across_y) * slope_y;
+    const float across = through(shift, slope_across - shift * slope_along, to_the_fall),
                 path = sqrtf(1.0f + across * across);  // through the cell [cells]
     const float decay = exp_negative(cells_per_length * path);
     set(i, n, decay, q * depth_per_flux * (1.0f - decay) / path);
-    to.turn[n] = turned.both;
+    to.turn[n] = turn(x, y, shift, slope_along, to_the_fall).both;
     to.entering[n] = airborne[i] + over_edge(x, y, i);
     airborne[i] = 0;
   }
@@ -191,7 +149,7 @@ struct Prepare {
     const bool solid = in.solid(i);
     const bool eddy = echo < 0.0f;
     to.decay[n] = solid || eddy ? 1.0f : decay * (1.0f - maximum(echo, 0.0f));
-    to.gain[n] = solid ? 0.0f : eddy ? -echo * time_in_quanta : (echo > 0.0f ? 0.5f : 1.0f) * gain;
+    to.level_gain[n] = solid ? 0.0f : eddy ? -echo * time_in_quanta : (echo > 0.0f ? 0.5f : 1.0f) * gain;
     to.lying[n] = solid ? 0 : sand[i];
   }
 
@@ -213,19 +171,46 @@ struct Prepare {
   }
 };
 
-/// What comes to a place from the line before, where `near` left the place upwind of it, drift.cells before
-/// it, and `far` the one before that.
-DESERT_HD Quanta landing(const Drift& drift, Quanta near, Quanta far) {
-  return near - share(near, drift.beyond) + share(far, drift.beyond);
+/// From the middle of a cell to where e^(−(x_out − x)/L_sat) has its mean in it [cells].
+DESERT_HD float place_of_mean(float cells_per_length) {
+  const float square = cells_per_length * cells_per_length;
+  if (cells_per_length < 0.5f) return cells_per_length * (1.0f - square * (1.0f / 60.0f)) * (1.0f / 12.0f);
+  const float decay = exp_negative(cells_per_length);
+  return 0.5f * (1.0f + decay) / lost_share(cells_per_length) - 1.0f / cells_per_length;
 }
 
-/// A line of the sweep. First the undisturbed wind carries what the cells of the line before hand on; then
-/// each place gives some of what comes to its neighbours. The turn is taken where the sand arrives, because
-/// the ground there is what it shapes: taken where it leaves, a line before, it would raise waves of four
-/// lines and less instead of smoothing them. `inside`: the place is not an end of its line.
+/// The gain of a cell along which the saturated flux is linear, from that of cells in which it is constant.
+/// Where nothing is taken up, nothing is taken up of what neighbours have.
+template <bool inside>
+struct LinearGain {
+  Grid lines;  ///< the places of a line are its columns, and lines its rows
+  Drift drift;
+  float ahead;  ///< place_of_mean(), on the way of the undisturbed wind [lines]
+  const float *level_gain, *decay;
+  float* gain;
+
+  DESERT_HD float at(int place, int line) const {
+    return level_gain[inside ? lines.index(place, line) : sample_index(lines, place, line)];
+  }
+  DESERT_HD void operator()(int place, int line) const {
+    const int n = lines.index(place, line), near = drift.cells, far = near + 1;
+    const float next = lerp(at(place + near, line + 1), at(place + far, line + 1), drift.share_beyond);
+    const float before = lerp(at(place - near, line - 1), at(place - far, line - 1), drift.share_beyond);
+    const float here = level_gain[n],
+                linear = clamp(here + ahead * 0.5f * (next - before), 0.0f, 2.0f * here);
+    gain[n] = here > 0.0f && decay[n] < 1.0f ? linear : here;
+  }
+};
+
+/// A line of the sweep. A cell hands on its sand, and which part of it goes to the second place. First the
+/// undisturbed wind carries what the cells of the line before hand on; then each place gives some of what
+/// comes to its neighbours. The turn is taken where the sand arrives, because the ground there is what it
+/// shapes: taken where it leaves, a line before, it would raise waves of four lines and less instead of
+/// smoothing them. `inside`: the place is not an end of its line.
 template <bool inside>
 struct PassSand {
   static constexpr int words = words_handed_on, reach = reach_of_words;
+  static constexpr bool completes = true;
   using Word = Quanta;
   struct Inflow {
     Quanta entering;
@@ -261,11 +246,12 @@ struct PassSand {
   }
   template <class Before, class After>
   DESERT_HD Result pass(const Loaded& cell, const Before& before, const After& after) const {
-    const int near = -drift.cells, far = near - 1;
+    const int near = -drift.cells;
     // Numbers of their own, not an array or a choice: compilers vectorise the loops around.
-    const Quanta come_before = cell.before.entering + landing(drift, before(0, near - 1), before(0, far - 1));
-    const Quanta come = cell.here.entering + landing(drift, before(0, near), before(0, far));
-    const Quanta come_after = cell.after.entering + landing(drift, before(0, near + 1), before(0, far + 1));
+    const Quanta far_passed = before(1, near - 1), near_passed = before(1, near);
+    const Quanta come_before = cell.before.entering + before(0, near - 1) - far_passed + before(1, near - 2);
+    const Quanta come = cell.here.entering + before(0, near) - near_passed + far_passed;
+    const Quanta come_after = cell.after.entering + before(0, near + 1) - before(1, near + 1) + near_passed;
     const Quanta to_before = cell.here.turn.before(come), to_after = cell.here.turn.after(come);
     const Quanta turned_in = cell.before.turn.after(come_before) + cell.after.turn.before(come_after);
     const Quanta in = come - to_before - to_after + turned_in;
@@ -273,6 +259,10 @@ struct PassSand {
     const Quanta out = Die::whole_at_most(wanted, in + cell.lying, cell.die);
     after(0) = out;
     return {in - out, out, to_before, to_after};
+  }
+  template <class Here>
+  DESERT_HD void complete(const Here& here) const {
+    here(1) = to_second(drift, here(0, -1), here(0, 0), here(0, 1));
   }
   DESERT_HD void store(int line, int place, const Result& result) const {
     const int n = line * order.length() + place;
@@ -305,7 +295,7 @@ struct Settle {
     sand[i] = before + change;
     if constexpr (!inside) {
       if (order.line_of(x, y) == 0 && order.periodic_along()) airborne[i] = over_seam(place);
-      ledger.book_out(Material::sand, i, lost(n, order.line_of(x, y), place));
+      ledger.book_out(Material::sand, i, lost(order.line_of(x, y), place));
     }
 
     const float across = drift.shift + Turn{from.turn[n]}.mean();
@@ -324,25 +314,29 @@ struct Settle {
     flux_y[i] += parts.y;
   }
 
+  /// What a place of a line hands on; nothing beyond an open end.
+  DESERT_HD Quanta out(int line, int place) const {
+    const int within = order.place_within(place);
+    return within < 0 ? 0 : from.out[line * order.length() + within];
+  }
+  DESERT_HD Quanta second(int line, int place) const {
+    return to_second(drift, out(line, place - 1), out(line, place), out(line, place + 1));
+  }
   /// What the last line hands on to a place of the first.
   DESERT_HD Quanta over_seam(int place) const {
-    const int last = (order.lines() - 1) * order.length();
-    const auto out = [&](int there) DESERT_INLINE {
-      const int within = order.place_within(there);
-      return within < 0 ? 0 : from.out[last + within];
-    };
-    return landing(drift, out(place - drift.cells), out(place - drift.cells - 1));
+    const int last = order.lines() - 1, near = place - drift.cells;
+    return out(last, near) - second(last, near) + second(last, near - 1);
   }
   /// What goes over an open edge: with the wind from the cell to the next line, and to the side within its
   /// line.
-  DESERT_HD Quanta lost(int n, int line, int place) const {
-    const Quanta out = from.out[n];
+  DESERT_HD Quanta lost(int line, int place) const {
+    const Quanta all = out(line, place);
     const bool no_next_line = line == order.lines() - 1 && !order.periodic_along();
-    Quanta sum = no_next_line ? out : 0;
+    Quanta sum = no_next_line ? all : 0;
     if (order.periodic_across()) return sum;
-    const Quanta far = share(out, drift.beyond);
+    const Quanta far = second(line, place);
     if (!no_next_line) {
-      sum += order.place_within(place + drift.cells) < 0 ? out - far : 0;
+      sum += order.place_within(place + drift.cells) < 0 ? all - far : 0;
       sum += order.place_within(place + drift.cells + 1) < 0 ? far : 0;
     }
     sum += place == 0 ? from.over_ends[2 * line] : 0;

@@ -167,9 +167,9 @@ def main():
     lines = ["# Time steps", "",
              "What a process does in the same time at several time steps, relative to steps of 1 s. Written by",
              "`test/bench/time_steps.py --page doc/contributing/time_steps.md`. More than 5 % off is bold.",
-             "Steps longer than a second are divided where sand or plants move. Hops and avalanches take turns, which is of first",
-             "order in the step: where half a metre is lifted a second, steps of 1 s are 7 % from short ones, and short steps leave",
-             "less rock bare. A film of rain runs as fast as pipes let it, and what it wears then goes with the step.", ""]
+             "Longer ones are divided where sand or plants move. Hops and avalanches take turns, which is of first order: where much",
+             "is lifted, steps of 1 s are 7 % from short ones, which leave less rock bare. What a film of rain wears by pipes goes",
+             "with the step.", ""]
     lines += table(arguments, WORLDS, STEPS, 1)
     lines += ["", "Continuum transport, relative to steps of ten minutes; steps beyond 3900 s are divided.",
               ""]

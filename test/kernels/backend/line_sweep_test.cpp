@@ -36,6 +36,15 @@ struct Mixing {
   void store(int line, int place, Number result) const { results[line * length + place] = result; }
 };
 
+/// The second number depends on the first ones of the same line.
+struct Completing : Mixing {
+  static constexpr bool completes = true;
+  template <class Here>
+  void complete(const Here& here) const {
+    here(1) = 3 * here(0, -1) + 5 * here(0, 0) + 7 * here(0, 1);
+  }
+};
+
 /// Where the ends of a line are laws of their own: those, and what a line does as a whole.
 struct MixingEnds : Mixing {
   Number load(int line, int place) const { return Mixing::load(line, place) + 7; }
@@ -69,6 +78,16 @@ std::vector<Number> expected(const Law& law, int first, int end) {
       after[1][static_cast<std::size_t>(n)] = sum >> 7;
       if (line >= 0) all[static_cast<std::size_t>(line * law.length + n)] = sum ^ at(1, n);
     }
+    if constexpr (CompletesLines<Law>::value)
+      for (int n = 0; n < law.length; ++n) {
+        const auto at = [&](int place) -> Number {
+          const int within = law.ring ? (place + law.length) % law.length : place;
+          const auto end = static_cast<int>(after[0].size());
+          if (within < 0 || within >= end) return law.beyond(0, 0);
+          return after[0][static_cast<std::size_t>(within)];
+        };
+        after[1][static_cast<std::size_t>(n)] = 3 * at(n - 1) + 5 * at(n) + 7 * at(n + 1);
+      }
     for (int w = 0; w < 2; ++w) before[w] = after[w];
   }
   return all;
@@ -90,6 +109,9 @@ TEST(LineSweep, PassesLinesOfAnyLengthOnAnyNumberOfThreads) {
         for_each_line_in_turn(exec, 0, end, length, memory.data(),
                               LineWithEnds(law, MixingEnds{law}, length));
         EXPECT_EQ(results, expected(MixingWithEnds{law}, 0, end)) << "with ends";
+        const Completing completing{law};
+        for_each_line_in_turn(exec, 0, end, length, memory.data(), completing);
+        EXPECT_EQ(results, expected(completing, 0, end)) << "completed";
       }
 }
 
