@@ -276,8 +276,8 @@ __global__ void __launch_bounds__(longest_line_block)
       const int line = first + d;
       if (line >= block.end) break;
       static_assert(ahead % 2 == 0, "lines take turns with two parts of the memory");
-      Word *const old_words = memory + d % 2 * words * pitch, *const new_words =
-                                                                  memory + (1 - d % 2) * words * pitch;
+      Word* const old_words = memory + d % 2 * words * pitch;
+      Word* const new_words = memory + (1 - d % 2) * words * pitch;
       using Before = LineBefore<Law, ring>;
       const auto of = [&](const Word* line_words) {
         return Before{law, line_words, pitch, thread, length, first_thread, last_thread};

@@ -18,11 +18,12 @@
 ///
 ///   x − x_middle = l (½ coth ½λ − 1/λ)
 ///
-/// The amounts are whole quanta, and what a cell hands on is exactly what the next line gets: no
-/// sand is lost. The undisturbed wind carries it from line to line; where e points to the side of that, by at
-/// most a cell a line, shares of what comes go to the neighbours in the line, and a ridge one cell wide loses
-/// sand to both. Sand that leaves over a periodic edge lies in the layer airborne_sand until the next step
-/// takes it in on the other side; over an open edge it is booked as outflow.
+/// The amounts are whole quanta, and what a cell hands on is exactly what the next line gets: no sand is
+/// lost. The undisturbed wind carries it from line to line, between two places by to_second(); where e points
+/// to the side of that, by at most a cell a line, shares of what comes go to the neighbours in the line, and
+/// a ridge one cell wide loses sand to both. Sand that leaves over a periodic edge lies in the layer
+/// airborne_sand until the next step takes it in on the other side; over an open edge it is booked as
+/// outflow.
 ///
 /// Plants take the share of the stress 1 − 1/(1 + Γ v), Γ = `plant_drag`. Moisture divides the threshold by
 /// the dryness of saltation_inputs.hpp; nothing is taken up under water. An obstacle hands on what comes. In
