@@ -1,4 +1,6 @@
 /// Plans over the live traversability by Dijkstra's algorithm, and drives it. Parameters: ~goal_x, ~goal_y.
+/// What cannot be traversed costs a hundred times as much, so that there is a way out of it for a rover that
+/// has cut a corner.
 #include <geometry_msgs/Twist.h>
 #include <nav_msgs/Odometry.h>
 #include <nav_msgs/Path.h>
@@ -23,7 +25,8 @@ nav_msgs::Path plan(const desert_sim::LayerMap& ground, double x, double y, doub
     queue.pop();
     for (int v = std::max(0, row - 1); v <= std::min(height - 1, row + 1); ++v)
       for (int u = std::max(0, column - 1), m = v * width + u; u <= std::min(width - 1, column + 1); ++u, ++m)
-        if (const double l = length[n] + std::hypot(u - column, v - row) / ground.at(u, v); l < length[m])
+        if (const double l = length[n] + std::hypot(u - column, v - row) / std::max(0.01f, ground.at(u, v));
+            l < length[m])
           next[m] = n, queue.push({-(length[m] = l), m});
   }
   for (int n = start; n >= 0 && length[start] < INFINITY; n = next[n]) {

@@ -1,5 +1,8 @@
 #!/usr/bin/env python3
-"""Plans over the live traversability by Dijkstra's algorithm, and drives the plan. Parameters: ~goal_x, ~goal_y [m]."""
+"""Plans over the live traversability by Dijkstra's algorithm, and drives the plan. Parameters: ~goal_x, ~goal_y [m].
+
+What cannot be traversed costs a hundred times as much, so that there is a way out of it for a rover that has cut a corner.
+"""
 import heapq
 import math
 
@@ -17,8 +20,9 @@ def plan(ground, start, goal):  # points of the cheapest way; none if there is n
         if cell not in after:
             after[cell] = towards
             for x, y in [(cell[0] + i, cell[1] + j) for i in (-1, 0, 1) for j in (-1, 0, 1)]:
-                if 0 <= x < ground.width and 0 <= y < ground.height and ground.values[y, x] > 0:
-                    heapq.heappush(queue, (length + math.dist(cell, (x, y)) / ground.values[y, x], (x, y), cell))
+                if 0 <= x < ground.width and 0 <= y < ground.height:
+                    ease = ground.values[y, x] if ground.values[y, x] > 0.01 else 0.01
+                    heapq.heappush(queue, (length + math.dist(cell, (x, y)) / ease, (x, y), cell))
     while begin in after and way[-1] != end:
         way.append(after[way[-1]])
     return [ground.cell_to_world(*cell) for cell in way if cell in after]
