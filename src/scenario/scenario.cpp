@@ -16,6 +16,7 @@
 #include "src/scenario/seed_parameter.hpp"
 #include "src/scenario/yaml_document.hpp"
 #include "src/scenario/yaml_lists.hpp"
+#include "src/scenario/yaml_text.hpp"
 
 namespace desert_sim {
 
@@ -155,12 +156,7 @@ namespace {
 
 Scenario parse_with_settings(const std::string& text, const std::string& source, const std::string& folder,
                              const Settings& settings) {
-  YAML::Node root;
-  try {
-    root.reset(yaml::load_document(text));
-  } catch (const YAML::Exception& e) {
-    throw ConfigError(source + ": line " + std::to_string(e.mark.line + 1) + ": " + e.msg);
-  }
+  YAML::Node root = yaml_text::parse(text, source);
   if (root.IsNull()) root = YAML::Node(YAML::NodeType::Map);
   if (root.IsMap())
     for (const std::string& setting : settings) apply_setting(root, setting);

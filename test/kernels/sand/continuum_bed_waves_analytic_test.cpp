@@ -83,7 +83,8 @@ TEST_P(BedWaves, GrowAndTravelByTheDispersionRelation) {
 }
 
 /// With cells as wide as the saturation length and 20 a wave, within 10 % and 1 % of how the wave moves. To
-/// first order in the cell, waves at 45 degrees grew by 27 to 118 % of it too slowly.
+/// first order in the cell, waves of 80 m on cells of 4 m grew by 18 % (at 0 degrees) to 77 % (at 45) too
+/// slowly.
 TEST_P(BedWaves, GrowAndTravelWithTwentyCellsAWave) {
   double worst = 0;
   for (const double degrees : {0.0, 15.0, 30.0, 45.0, 55.0, 70.0}) {
