@@ -61,7 +61,16 @@ std::string describe_parameters() {
          "that can "
          "change while a simulation runs, such as `rain.rate`) change to the values; numbers over `ramp` "
          "seconds "
-         "(0 if not given), all else at once.\n";
+         "(0 if not given), all else at once.\n\n"
+         "`{time: [s], command: NAME, ...}` with the keys of the command, as a journal has them: at `time`, "
+         "`set_wind`, "
+         "`set_wind_schedule`, `edit_wind`, `edit_terrain` or `edit_plants` is applied as the service of "
+         "that "
+         "name "
+         "would. What is refused when it is due is an error in the log, and the run goes on.\n\n"
+         "Both may have `every: [s]`, from time step to time step at most, and `until: [s]`: they happen "
+         "again and "
+         "again. `desert_run --script FILE` adds a list of such entries from a file.\n";
   out << "\n## `species`: a list of at most " << max_species << "\n\n";
   write_parameter_table(out, SpeciesName());
   out << "\nPresets:";

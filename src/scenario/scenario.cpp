@@ -82,7 +82,7 @@ void read_run(const YAML::Node& node, ValidationErrors& errors, Scenario& s) {
   std::set<std::string> known{"timeline"};
   yaml::read_parameters(node, "run.", errors, s.run, known);
   yaml::reject_unknown_keys(node, "run.", known, errors);
-  if (node.IsDefined() && node.IsMap()) s.timeline = read_timeline(node["timeline"], errors);
+  if (node.IsDefined() && node.IsMap()) s.timeline = read_timeline(node["timeline"], "run.timeline", errors);
 }
 
 /// Checks conditions that involve more than one parameter.
@@ -227,7 +227,7 @@ Scenario parse_scenario(const YAML::Node& given, const std::string& name, const 
   check_species(s, errors);
   check_sections(s, errors);
   errors.throw_if_any();
-  check_timeline(s, errors);  // it applies settings, which needs a valid scenario
+  check_timeline(s, s.timeline, "run.timeline", errors);  // it applies settings, which needs a valid scenario
   errors.throw_if_any();
   return s;
 }

@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "src/core/input_file.hpp"
 #include "src/core/quoted.hpp"
 #include "src/core/time_units.hpp"
 #include "src/scenario/live_parameters.hpp"
 #include "src/scenario/yaml_parameters.hpp"
+#include "src/scenario/yaml_text.hpp"
 
 namespace desert_sim {
 
@@ -32,22 +34,59 @@ double read_time(const YAML::Node& node, const std::string& key, ValidationError
   return value;
 }
 
+void read_repetition(const YAML::Node& node, const std::string& key, ValidationErrors& errors,
+                     TimelineEntry& entry) {
+  entry.every = read_time(node["every"], key + ".every", errors);
+  if (!node["until"]) return;
+  entry.until = read_time(node["until"], key + ".until", errors);
+  if (!(entry.every > 0)) errors.add(key + ".until", "is given without 'every'");
+  if (entry.until < entry.time) errors.add(key + ".until", "is earlier than 'time'");
+}
+
+/// All keys of the entry but those that say when are the command's.
+std::string command_text(const YAML::Node& entry) {
+  YAML::Node command(YAML::NodeType::Map);
+  for (const auto& part : entry)
+    if (const std::string key = part.first.Scalar(); key != "time" && key != "every" && key != "until")
+      command[key] = part.second;
+  return flow_text(command);
+}
+
 TimelineEntry read_entry(const YAML::Node& node, const std::string& key, ValidationErrors& errors) {
   TimelineEntry entry;
-  yaml::reject_unknown_keys(node, key + ".", {"time", "ramp", "set"}, errors);
+  const bool is_command = node.IsMap() && node["command"];
+  if (!is_command)
+    yaml::reject_unknown_keys(node, key + ".", {"time", "ramp", "every", "until", "set"}, errors);
   if (node.IsNull()) errors.add(key, "nothing is given where keys and values are expected");
   if (!node.IsMap()) return entry;
   if (!node["time"]) errors.add(key + ".time", "is missing");
   entry.time = read_time(node["time"], key + ".time", errors);
+  read_repetition(node, key, errors, entry);
+  if (is_command) {
+    entry.command = command_text(node);
+    return entry;
+  }
   entry.ramp = read_time(node["ramp"], key + ".ramp", errors);
   const YAML::Node set = node["set"];
   if (!set || !set.IsMap() || set.size() == 0) {
-    errors.add(key + ".set", "must name parameters and their values, such as {rain.rate: 1.0e-5}");
+    errors.add(key + ".set",
+               "must name parameters and their values, such as {rain.rate: 1.0e-5}, or "
+               "'command' a command");
     return entry;
   }
   for (const auto& setting : set)
     entry.settings.push_back(setting.first.Scalar() + "=" + flow_text(setting.second));
   return entry;
+}
+
+bool is_earlier(const TimelineEntry& a, const TimelineEntry& b) { return a.time < b.time; }
+
+/// Returns whether there are not too many.
+bool check_length(std::size_t length, const std::string& key, ValidationErrors& errors) {
+  if (length > max_timeline_entries)
+    errors.add(key, std::to_string(length) + " entries are given (allowed: at most " +
+                        std::to_string(max_timeline_entries) + ")");
+  return length <= max_timeline_entries;
 }
 
 /// Sets `found` to the value of a floating-point parameter that can change, and returns its unit; null if
@@ -65,6 +104,25 @@ const char* find_number(const Scenario& scenario, const std::string& path, doubl
 }
 
 }  // namespace
+
+std::optional<double> TimelineEntry::next_after(double after) const {
+  if (time > after) return time;
+  if (!(every > 0)) return std::nullopt;
+  // The quotient is rounded, so that the repetition it names may be one too early or too late.
+  double n = std::max(0.0, std::floor((after - time) / every) - 1);
+  while (time + n * every <= after) ++n;
+  const double next = time + n * every;
+  return next <= until ? std::optional(next) : std::nullopt;
+}
+
+std::optional<double> TimelineEntry::last_between(double after, double now) const {
+  const std::optional<double> next = next_after(after);
+  if (!next || *next > now) return std::nullopt;
+  if (!(every > 0)) return next;
+  double n = std::floor((std::min(now, until) - time) / every) + 1;
+  while (time + n * every > now || time + n * every > until) --n;
+  return time + n * every;
+}
 
 int Ramp::step_index_at(double time) const {
   if (time >= start + duration) return step_count;
@@ -110,53 +168,88 @@ void check_ramp(const Scenario& scenario, const Ramp& ramp, double time, const s
     errors.add(key + ".path", in_quotes(ramp.path) + " is not a floating-point parameter that can change");
 }
 
-std::vector<TimelineEntry> read_timeline(const YAML::Node& list, ValidationErrors& errors) {
+std::vector<TimelineEntry> read_timeline(const YAML::Node& list, const std::string& key,
+                                         ValidationErrors& errors) {
   std::vector<TimelineEntry> timeline;
-  const std::string key = "run.timeline";
   if (!list.IsDefined() || list.IsNull()) return timeline;
   if (!list.IsSequence()) {
     errors.add(key, yaml::node_text(list) + " is given where a list is expected");
     return timeline;
   }
-  if (list.size() > max_timeline_entries) {
-    errors.add(key, std::to_string(list.size()) + " entries are given (allowed: at most " +
-                        std::to_string(max_timeline_entries) + ")");
-    return timeline;
-  }
+  if (!check_length(list.size(), key, errors)) return timeline;
   for (std::size_t n = 0; n < list.size(); ++n) {
+    if (errors.is_full()) break;
     timeline.push_back(read_entry(list[n], key + "." + std::to_string(n), errors));
-    if (n > 0 && timeline[n].time < timeline[n - 1].time)
+    if (n > 0 && is_earlier(timeline[n], timeline[n - 1]))
       errors.add(key + "." + std::to_string(n) + ".time", "is earlier than that of the previous entry");
   }
   return timeline;
 }
 
+namespace {
+
+void emit_settings(YAML::Emitter& out, const TimelineEntry& entry) {
+  out << YAML::Key << "ramp" << YAML::Value << entry.ramp << YAML::Key << "set" << YAML::Value
+      << YAML::BeginMap;
+  for (const std::string& setting : entry.settings) {
+    const std::size_t equals = setting.find('=');
+    out << YAML::Key << setting.substr(0, equals) << YAML::Value << YAML::Load(setting.substr(equals + 1));
+  }
+  out << YAML::EndMap;
+}
+
+}  // namespace
+
 void emit_timeline(YAML::Emitter& out, const std::vector<TimelineEntry>& timeline) {
   out << YAML::Key << "timeline" << YAML::Value << YAML::BeginSeq;
   for (const TimelineEntry& entry : timeline) {
-    out << YAML::Flow << YAML::BeginMap << YAML::Key << "time" << YAML::Value << entry.time << YAML::Key
-        << "ramp" << YAML::Value << entry.ramp << YAML::Key << "set" << YAML::Value << YAML::BeginMap;
-    for (const std::string& setting : entry.settings) {
-      const std::size_t equals = setting.find('=');
-      out << YAML::Key << setting.substr(0, equals) << YAML::Value << YAML::Load(setting.substr(equals + 1));
-    }
-    out << YAML::EndMap << YAML::EndMap;
+    out << YAML::Flow << YAML::BeginMap << YAML::Key << "time" << YAML::Value << entry.time;
+    if (entry.every > 0) out << YAML::Key << "every" << YAML::Value << entry.every;
+    if (entry.until < entry.no_end) out << YAML::Key << "until" << YAML::Value << entry.until;
+    if (entry.command.empty())
+      emit_settings(out, entry);
+    else
+      for (const auto& part : YAML::Load(entry.command))
+        out << YAML::Key << part.first << YAML::Value << part.second;
+    out << YAML::EndMap;
   }
   out << YAML::EndSeq;
 }
 
-void check_timeline(const Scenario& scenario, ValidationErrors& errors) {
+void check_timeline(const Scenario& scenario, const std::vector<TimelineEntry>& timeline,
+                    const std::string& list, ValidationErrors& errors) {
   Scenario then = scenario;
   then.timeline.clear();
   for (int* cells : {&then.grid.width, &then.grid.height}) *cells = *cells > 0 ? *cells : 1;
   if (then.grid.cell_size == 0) then.grid.cell_size = 1;  // resolve_grid() may set it later
-  for (std::size_t n = 0; n < scenario.timeline.size(); ++n) {
+  for (std::size_t n = 0; n < timeline.size(); ++n) {
+    const TimelineEntry& entry = timeline[n];
+    const std::string key = list + "." + std::to_string(n);
+    if (entry.every > 0 && static_cast<float>(entry.every) < scenario.run.time_step)
+      errors.add(key + ".every", std::to_string(entry.every) + " s is less than run.time_step, " +
+                                     std::to_string(scenario.run.time_step) + " s");
     try {
-      then = with_live_settings(then, scenario.timeline[n].settings);
+      if (!entry.settings.empty()) then = with_live_settings(then, entry.settings);
     } catch (const ConfigError& e) {
-      errors.add("run.timeline." + std::to_string(n) + ".set", e.what());
+      errors.add(key + ".set", e.what());
     }
   }
+}
+
+void add_script(Scenario& scenario, const std::string& path) {
+  ValidationErrors errors(path);
+  const YAML::Node list = yaml_text::parse(InputFile(path, "").read_all(), path);
+  if (!list.IsSequence())
+    throw ConfigError(path + ": is not a list of what happens when (allowed: entries as of run.timeline)");
+  std::vector<TimelineEntry> script = read_timeline(list, "timeline", errors);
+  check_length(scenario.timeline.size() + script.size(), "timeline, with the scenario's", errors);
+  errors.throw_if_any();
+  check_timeline(scenario, script, "timeline", errors);
+  errors.throw_if_any();
+  std::vector<TimelineEntry> merged;
+  std::merge(scenario.timeline.begin(), scenario.timeline.end(), script.begin(), script.end(),
+             std::back_inserter(merged), is_earlier);
+  scenario.timeline = std::move(merged);
 }
 
 }  // namespace desert_sim

@@ -1,14 +1,20 @@
 #pragma once
-/// `run.timeline`: parameters that change at given simulated times, at once or over a ramp.
+/// `run.timeline`: what happens at given simulated times, once or repeatedly: parameters change, at once or
+/// over a ramp, or a command is applied.
 ///
 ///     run:
 ///       timeline:
 ///         - {time: 500, ramp: 200, set: {rain.rate: 2.0e-5, wind.speed: 3}}
+///         - {time: 600, every: 60, until: 900, command: edit_terrain, layer: sand, x: 40, y: 50, radius: 6,
+///            value: 0.2}
 ///
 /// Any parameter that can change while a simulation runs can be set. A floating-point parameter changes
 /// linearly over `ramp` seconds from its value at `time` to the new one, in Ramp::step_count equal steps; all
-/// others change at `time`.
+/// others change at `time`. The commands, and their keys, are those of timed_command.hpp. All happens before
+/// the first step that begins at the time or later, in order of time; what is due several times before one
+/// step happens once.
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -26,8 +32,17 @@ struct Scenario;
 class ValidationErrors;
 
 struct TimelineEntry {
+  static constexpr double no_end = 1e12;
   double time = 0, ramp = 0;            ///< [s]
+  double every = 0;                     ///< [s]; 0: once
+  double until = no_end;                ///< [s]; no repetition comes later
   std::vector<std::string> settings{};  ///< "path=value"
+  std::string command{};                ///< in their place: a command as YAML in flow style
+
+  /// The first time after `time` [s] at which it happens; none if it does not happen again.
+  std::optional<double> next_after(double time) const;
+  /// The last such time that is not later than `now` [s].
+  std::optional<double> last_between(double after, double now) const;
 };
 constexpr std::size_t max_timeline_entries = 4096;
 
@@ -70,9 +85,15 @@ void check_ramp(const Scenario& scenario, const Ramp& ramp, double time, const s
 std::vector<Ramp> extract_ramps(const Scenario& scenario, std::vector<std::string>& settings, double time,
                                 double duration);
 
-std::vector<TimelineEntry> read_timeline(const YAML::Node& list, ValidationErrors& errors);
+/// `key` names the list in errors.
+std::vector<TimelineEntry> read_timeline(const YAML::Node& list, const std::string& key,
+                                         ValidationErrors& errors);
 void emit_timeline(YAML::Emitter& out, const std::vector<TimelineEntry>& timeline);
-/// Applies the entries in order to a copy of the scenario and adds an error for each that is refused.
-void check_timeline(const Scenario& scenario, ValidationErrors& errors);
+/// Applies the settings in order to a copy of the scenario and adds an error for each entry that is refused.
+/// `list` names the timeline in errors.
+void check_timeline(const Scenario& scenario, const std::vector<TimelineEntry>& timeline,
+                    const std::string& list, ValidationErrors& errors);
+/// Adds the entries that a script has: a YAML file with a list as of run.timeline. Throws ConfigError.
+void add_script(Scenario& scenario, const std::string& path);
 
 }  // namespace desert_sim

@@ -72,7 +72,7 @@ std::unique_ptr<Simulation> simulation_of(const CheckpointHeader& header, Exec& 
   s.wind_reference = header.numbers.wind_reference;
   s.flags = header.flags;
   s.counts = header.counts;
-  s.next_timeline_entry = header.numbers.next_timeline_entry;
+  s.timeline_time = header.timeline_time;
   s.ramps = header.ramps;
   s.initial = header.initial;
   s.write_ledger(header.ledger);

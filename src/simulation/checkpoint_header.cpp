@@ -45,12 +45,9 @@ CheckpointHeader header_of(const Simulation& simulation) {
   CheckpointHeader header;
   header.start = s.start;
   header.scenario = s.scenario;
-  header.numbers = {s.steps,
-                    s.terrain.scale().datum,
-                    s.terrain.scale().exponent,
-                    s.wind_reference,
-                    static_cast<std::uint64_t>(s.plants.count),
-                    s.next_timeline_entry};
+  header.numbers = {s.steps, s.terrain.scale().datum, s.terrain.scale().exponent, s.wind_reference,
+                    static_cast<std::uint64_t>(s.plants.count)};
+  header.timeline_time = s.timeline_time;
   header.flags = s.flags;
   for (const Process& process : process_table().processes)
     if (!process.counter.empty())
@@ -76,6 +73,7 @@ std::string header_text(const CheckpointHeader& header) {
   entry(out, "start", dump_scenario(header.start));
   entry(out, "scenario", dump_scenario(header.scenario));
   yaml::emit_parameters(out, header.numbers);
+  entry(out, "timeline_time", header.timeline_time);
   for (const Process& process : process_table().processes) {
     for (const std::string& flag : process.flags) entry(out, flag.c_str(), header.flags.count(flag) > 0);
     if (const std::string& counter = process.counter; !counter.empty())
@@ -182,6 +180,26 @@ void read_clock(const YAML::Node& node, ValidationErrors& errors, CheckpointHead
                                            std::to_string(header.time()) + " s");
 }
 
+/// Checkpoints of former versions have the number of entries that are done in its place: of those at one
+/// time, all or none are.
+void read_timeline_time(const YAML::Node& node, ValidationErrors& errors, CheckpointHeader& header) {
+  const std::vector<TimelineEntry>& timeline = header.scenario.timeline;
+  const std::string former = "next_timeline_entry";
+  if (node["timeline_time"]) {
+    double& time = header.timeline_time;
+    if (!yaml::decode_number(node["timeline_time"], "s", time) || !(time >= -1 && time <= header.time()))
+      errors.add("timeline_time", yaml::node_text(node["timeline_time"]) + " is not in [-1, " +
+                                      std::to_string(header.time()) + "] s");
+  } else if (std::size_t done = 0; !node[former]) {
+    errors.add("timeline_time", "is missing");
+  } else if (!YAML::convert<std::size_t>::decode(node[former], done) || done > timeline.size()) {
+    errors.add(former,
+               yaml::node_text(node[former]) + " is not in [0, " + std::to_string(timeline.size()) + "]");
+  } else if (done > 0) {
+    header.timeline_time = timeline[done - 1].time;
+  }
+}
+
 void read_ramps(const YAML::Node& list, ValidationErrors& errors, CheckpointHeader& header) {
   if (!list.IsSequence()) return errors.add("ramps", yaml::node_text(list) + " is not a list");
   const double time = header.time();
@@ -273,9 +291,6 @@ void check_together(const CheckpointHeader& header, ValidationErrors& errors) {
   if (now.width != start.width || now.height != start.height || now.cell_size != start.cell_size ||
       now.boundary != start.boundary)
     errors.add("start", "its grid is not that of scenario");
-  if (header.numbers.next_timeline_entry > header.scenario.timeline.size())
-    errors.add("next_timeline_entry", std::to_string(header.numbers.next_timeline_entry) + " is not in [0, " +
-                                          std::to_string(header.scenario.timeline.size()) + "]");
   const VegetationParameters& vegetation = header.scenario.get<VegetationParameters>();
   const auto room = static_cast<std::uint64_t>(!vegetation.enabled ? 0
                                                : vegetation.max_plants > 0
@@ -294,7 +309,7 @@ CheckpointHeader read_header(const YAML::Node& node, const std::string& path) {
   yaml::read_parameters(node, "", errors, header.numbers, known);
   if (node.IsMap()) read_what_processes_keep(node, errors, header, known);
   std::set<std::string> allowed = known;
-  allowed.insert({"clock", "ripple_wind", "wind_series"});
+  allowed.insert({"clock", "ripple_wind", "wind_series", "timeline_time", "next_timeline_entry"});
   yaml::reject_unknown_keys(node, "", allowed, errors);
   if (node.IsMap())
     for (const std::string& key : known)
@@ -304,6 +319,7 @@ CheckpointHeader read_header(const YAML::Node& node, const std::string& path) {
   header.scenario = read_scenario(node, "scenario", path);
   check_together(header, errors);
   if (node["clock"]) read_clock(node["clock"], errors, header);
+  read_timeline_time(node, errors, header);
   if (node["ripple_wind"])
     yaml::read_section(node["ripple_wind"], "ripple_wind", errors, header.ripple_wind.emplace());
   read_ramps(node["ramps"], errors, header);

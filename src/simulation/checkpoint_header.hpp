@@ -16,7 +16,6 @@ struct CheckpointNumbers {
   int exponent = HeightScale::finest;
   Quanta wind_reference = 0;
   std::uint64_t plants = 0;
-  std::uint64_t next_timeline_entry = 0;
 };
 constexpr auto parameter_table(const CheckpointNumbers*) {
   using P = CheckpointNumbers;
@@ -27,15 +26,14 @@ constexpr auto parameter_table(const CheckpointNumbers*) {
                 "Of 2, which gives the quantum in metres."),
       parameter("wind_reference", &P::wind_reference, -wall_height, wall_height, "quanta",
                 "Lowest surface at the start."),
-      parameter("plants", &P::plants, 0, 2147483647, "1", "Number of plants."),
-      parameter("next_timeline_entry", &P::next_timeline_entry, 0, static_cast<double>(max_timeline_entries),
-                "1", "Entries of run.timeline that are done."));
+      parameter("plants", &P::plants, 0, 2147483647, "1", "Number of plants."));
 }
 static_assert(table_is_complete<CheckpointNumbers>());
 
 struct CheckpointHeader {
   Scenario start, scenario;
   CheckpointNumbers numbers;
+  double timeline_time = -1;  ///< what run.timeline has until then has happened [s]
   ProcessFlags flags;
   ProcessCounts counts;
   ClockOrigin clock;

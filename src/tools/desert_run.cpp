@@ -90,7 +90,8 @@ void migrate(const std::string& path) {
 /// A session at the start of the scenario.
 std::unique_ptr<Session> begin_session(const Options& o, const Journal& journal, int threads) {
   if (o.positional().empty()) throw ConfigError("no scenario given (--help shows the usage)");
-  const Scenario scenario = load_scenario(scenario_argument(o.positional()[0]), settings_of(o));
+  Scenario scenario = load_scenario(scenario_argument(o.positional()[0]), settings_of(o));
+  if (o.has("script")) add_script(scenario, o.text("script", ""));
   auto session = std::make_unique<Session>(scenario, raster_loader(o.has("all-raster-formats")),
                                            o.text("backend", "auto"), threads, "", journal.undo_memory);
   if (o.has("replay")) session->require_journal_of_this_scenario(journal, o.text("replay", ""));

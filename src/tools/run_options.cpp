@@ -17,6 +17,9 @@ Options run_options() {
       .essential()
       .option("seed", "S", "same as --set seed=S")
       .essential()
+      .option("script", "FILE",
+              "what happens when: a YAML list of parameters that are set and commands, as in run.timeline")
+      .essential()
       .option("backend", "B", "auto (default), cpu or cuda")
       .essential()
       .option("threads", "N", "threads of the CPU backend")
@@ -71,6 +74,7 @@ Options run_options() {
               "start from a checkpoint (of any scenario; SCENARIO may be omitted), with what --set sets of "
               "the parameters that can change while a simulation runs")
       .essential()
+      .excludes("script")
       .option("replay", "JOURNAL",
               "apply the commands of a journal; without --steps, run as many steps as it has")
       .topic("describe", "What is printed or rewritten in place of a run")

@@ -77,18 +77,26 @@ void emit_points(YAML::Emitter& out, const std::vector<command::Point>& points) 
   out << YAML::EndSeq;
 }
 
+/// x, y, x, y …, or a list of pairs, as a person writes it.
 std::vector<command::Point> read_points(const YAML::Node& node, const std::string& source) {
   const YAML::Node points = node["points"];
   if (!points) return {};
   constexpr std::size_t most = command::EditTerrain::max_points;
-  if (!points.IsSequence() || points.size() % 2 != 0 || points.size() > 2 * most)
+  const bool pairs = points.IsSequence() && points.size() > 0 && points[0].IsSequence();
+  const std::size_t count = pairs ? points.size() : points.size() / 2;
+  if (!points.IsSequence() || (!pairs && points.size() % 2 != 0) || count > most)
     throw ConfigError(source + ": points: must be x, y of at most " + std::to_string(most) + " points");
-  std::vector<command::Point> places(points.size() / 2);
-  for (std::size_t n = 0; n < points.size(); ++n) {
-    command::Point& p = places[n / 2];
-    if (!YAML::convert<double>::decode(points[n], n % 2 ? p.y : p.x))
+  std::vector<command::Point> places(count);
+  for (std::size_t n = 0; n < count; ++n) {
+    if (pairs && !(points[n].IsSequence() && points[n].size() == 2))
       throw ConfigError(source + ": points[" + std::to_string(n) + "]: " + yaml::node_text(points[n]) +
-                        " is not a number");
+                        " is not a pair [x, y]");
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+      const YAML::Node number = pairs ? points[n][axis] : points[2 * n + axis];
+      if (!YAML::convert<double>::decode(number, axis ? places[n].y : places[n].x))
+        throw ConfigError(source + ": points[" + std::to_string(pairs ? n : 2 * n + axis) +
+                          "]: " + yaml::node_text(number) + " is not a number");
+    }
   }
   return places;
 }

@@ -22,20 +22,10 @@ constexpr double max_pixel_value = 1e5;  // [m], as of a value
 
 bool of_shares(const EditTerrain& edit) { return edit.layer == "obstacle" || edit.layer == "looseness"; }
 
-void check_layer(const EditTerrain& edit, const Terrain& terrain, ValidationErrors& errors) {
+void check_layer(const EditTerrain& edit, ValidationErrors& errors) {
   constexpr const char* layers[] = {"sand", "bedrock", "soil", "water", "obstacle", "looseness"};
   if (std::find(std::begin(layers), std::end(layers), edit.layer) == std::end(layers))
     errors.add("layer", not_one_of(edit.layer, joined(layers)));
-  if (edit.layer == "looseness" && !terrain.has(Layer::looseness))
-    errors.add("layer",
-               "looseness: this terrain has no layer looseness (a scenario with looseness.enabled or a step "
-               "that fills looseness has)");
-  if (edit.layer == "water" && !terrain.has(Layer::water))
-    errors.add("layer",
-               "water: this terrain has no layer water (a scenario with rain, springs, a sea or a step that "
-               "fills water has)");
-  if (edit.layer == "soil" && !terrain.has(Layer::soil))
-    errors.add("layer", "soil: this terrain has no layer soil (a scenario with a step that fills soil has)");
 }
 
 /// Whether all points lie on one line, or in one place.
@@ -142,10 +132,23 @@ void check_depth(const EditTerrain& edit, ValidationErrors& errors) {
 
 }  // namespace
 
-void check_edit(const EditTerrain& edit, const Terrain& terrain) {
+void require_layer(const EditTerrain& edit, const Terrain& terrain) {
+  constexpr struct {
+    Layer layer;
+    const char* have_it;
+  } layers[] = {{Layer::looseness, "with looseness.enabled or a step that fills looseness"},
+                {Layer::water, "with rain, springs, a sea or a step that fills water"},
+                {Layer::soil, "with a step that fills soil"}};
+  for (const auto& [layer, have_it] : layers)
+    if (edit.layer == info(layer).name && !terrain.has(layer))
+      throw ConfigError("edit_terrain: layer: " + edit.layer + ": this terrain has no layer " + edit.layer +
+                        " (a scenario " + have_it + " has)");
+}
+
+void check_edit(const EditTerrain& edit) {
   check_ranges(static_cast<const command::EditParameters&>(edit), "edit_terrain");
   ValidationErrors errors("edit_terrain");
-  check_layer(edit, terrain, errors);
+  check_layer(edit, errors);
   check_points(edit.shape, edit.points, errors);
   check_patch(edit, errors);
   errors.throw_if_any();

@@ -8,9 +8,11 @@ namespace desert_sim {
 
 class ValidationErrors;
 
-/// Throws ConfigError that names every parameter which is out of range, a layer that this terrain does not
-/// have or that cannot be edited, points and patches that do not make a shape.
-void check_edit(const command::EditTerrain& edit, const Terrain& terrain);
+/// Throws ConfigError that names every parameter which is out of range, a layer that cannot be edited, points
+/// and patches that do not make a shape.
+void check_edit(const command::EditTerrain& edit);
+/// Throws ConfigError if the terrain does not have the edit's layer.
+void require_layer(const command::EditTerrain& edit, const Terrain& terrain);
 
 /// Adds an error if the points are not those of such a shape.
 void check_points(BrushShape shape, const std::vector<command::Point>& points, ValidationErrors& errors);

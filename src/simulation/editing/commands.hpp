@@ -1,6 +1,7 @@
 #pragma once
 /// What changes a simulation between steps: commands from outside, and the scenario's timeline.
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,8 +18,8 @@ void check_wind_schedule(const WindRegime& regime, const std::string& what);
 
 class Commands {
  public:
-  Commands(SimulationState& state, Pipeline& pipeline)
-      : state_(state), pipeline_(pipeline), history_(state, pipeline) {}
+  /// Throws ConfigError if the scenario's timeline has commands that could never be applied.
+  Commands(SimulationState& state, Pipeline& pipeline);
 
   /// A command is applied whole, or throws ConfigError and changes nothing. `with_change`: the result tells
   /// what changed, cell by cell. Those that replace the simulation are the Session's: they throw Error.
@@ -26,8 +27,8 @@ class Commands {
 
   EditHistory& history() { return history_; }
 
-  /// Changes the parameters that the timeline and ramps change now. What is refused keeps its value, and is
-  /// an error in the log; a ramp tries again.
+  /// Does what the timeline has until now, and changes the parameters that ramps change. What is refused
+  /// changes nothing, and is an error in the log; a ramp tries again.
   void apply_timeline();
   /// What the timeline and ramps are changing, and what comes next; empty if nothing.
   std::string describe_changes() const;
@@ -36,6 +37,7 @@ class Commands {
   struct Execution;  ///< what each command does
   void set_parameters(const std::vector<std::string>& settings);
   std::vector<std::string> set_what_can_be_set(std::vector<std::string> due);
+  void apply_timed(const Command& command);
   /// Of `settings`, numbers become ramps where there is a duration [s]; former ramps of the same parameters
   /// stop.
   void begin_ramps(std::vector<std::string>& settings, double duration);
@@ -44,6 +46,7 @@ class Commands {
   Pipeline& pipeline_;
   std::vector<std::string> refused_parameters_;  ///< at the last step; the log has told why
   EditHistory history_;
+  std::vector<std::optional<Command>> timed_commands_;  ///< of each entry of the timeline
 };
 
 }  // namespace desert_sim

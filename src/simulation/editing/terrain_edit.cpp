@@ -42,7 +42,8 @@ void span(double centre, double reach, int n, bool periodic, int& first, int& co
 TerrainEdit::TerrainEdit(const command::EditTerrain& command, Terrain& terrain, const GridParameters& grid,
                          LedgerView ledger)
     : command_(command), terrain_(terrain), grid_(grid) {
-  check_edit(command, terrain);
+  check_edit(command);
+  require_layer(command, terrain);
   layer_ = layer_by_name(command.layer);
   brush_.grid = terrain.grid();
   brush_.ledger = ledger;

@@ -1,11 +1,13 @@
-/// Parameters that change by themselves: a scenario's timeline, and ramps.
+/// What happens by itself: a scenario's timeline, and ramps.
 #include <algorithm>
+#include <utility>
 
 #include "src/core/error.hpp"
 #include "src/core/joined.hpp"
 #include "src/core/log.hpp"
 #include "src/core/number_text.hpp"
 #include "src/simulation/editing/commands.hpp"
+#include "src/simulation/editing/timed_commands.hpp"
 
 namespace desert_sim {
 
@@ -15,7 +17,28 @@ std::string text_of(double value) { return number_text(value, 9); }
 
 std::string path_of(const std::string& setting) { return setting.substr(0, setting.find('=')); }
 
+using Due = std::pair<double, std::size_t>;  ///< when [s], and which entry
+
+/// The entries that are due after `after` and until `now` [s], in the order in which they happen.
+std::vector<Due> due_entries(const std::vector<TimelineEntry>& timeline, double after, double now) {
+  std::vector<Due> due;
+  for (std::size_t n = 0; n < timeline.size(); ++n)
+    if (const std::optional<double> time = timeline[n].last_between(after, now)) due.emplace_back(*time, n);
+  std::sort(due.begin(), due.end());
+  return due;
+}
+
+std::string name_of(const Command& command) {
+  return std::visit([](const auto& one) { return one.name; }, command);
+}
+
 }  // namespace
+
+Commands::Commands(SimulationState& state, Pipeline& pipeline)
+    : state_(state),
+      pipeline_(pipeline),
+      history_(state, pipeline),
+      timed_commands_(read_timed_commands(state.scenario)) {}
 
 void Commands::begin_ramps(std::vector<std::string>& settings, double duration) {
   for (const std::string& setting : settings)
@@ -58,16 +81,28 @@ std::vector<std::string> Commands::set_what_can_be_set(std::vector<std::string> 
   return due;
 }
 
+void Commands::apply_timed(const Command& command) {
+  try {
+    apply(command);
+  } catch (const ConfigError& e) {
+    log_error("run.timeline: at " + text_of(state_.time()) + " s " + name_of(command) +
+              " is refused: " + e.what());
+  }
+}
+
 void Commands::apply_timeline() {
-  const std::vector<TimelineEntry>& timeline = state_.scenario.timeline;
   std::vector<std::string> due;
-  for (; state_.next_timeline_entry < timeline.size() &&
-         timeline[state_.next_timeline_entry].time <= state_.time();
-       ++state_.next_timeline_entry) {
-    std::vector<std::string> settings = timeline[state_.next_timeline_entry].settings;
-    begin_ramps(settings, timeline[state_.next_timeline_entry].ramp);
+  for (const auto& [time, n] : due_entries(state_.scenario.timeline, state_.timeline_time, state_.time())) {
+    if (const std::optional<Command>& command = timed_commands_[n]) {
+      set_what_can_be_set(std::exchange(due, {}));  // what comes first may decide what the command does
+      apply_timed(*command);
+      continue;
+    }
+    std::vector<std::string> settings = state_.scenario.timeline[n].settings;
+    begin_ramps(settings, state_.scenario.timeline[n].ramp);
     due.insert(due.end(), settings.begin(), settings.end());
   }
+  state_.timeline_time = state_.time();
   for (Ramp& ramp : state_.ramps) {
     const int step_index = ramp.step_index_at(state_.time());
     if (step_index == ramp.step_index) continue;
@@ -88,10 +123,14 @@ std::string Commands::describe_changes() const {
   const auto add = [&text](const std::string& line) { text += (text.empty() ? "" : "; ") + line; };
   for (const Ramp& ramp : state_.ramps)
     add(ramp.path + " -> " + text_of(ramp.to) + " until " + text_of(ramp.start + ramp.duration) + " s");
-  if (state_.next_timeline_entry < state_.scenario.timeline.size()) {
-    const TimelineEntry& next = state_.scenario.timeline[state_.next_timeline_entry];
-    add("at " + text_of(next.time) + " s: " + joined(next.settings));
-  }
+  std::optional<Due> next;
+  for (std::size_t n = 0; n < state_.scenario.timeline.size(); ++n)
+    if (const std::optional<double> time = state_.scenario.timeline[n].next_after(state_.timeline_time))
+      next = next ? std::min(*next, Due(*time, n)) : Due(*time, n);
+  if (next)
+    add("at " + text_of(next->first) + " s: " +
+        (timed_commands_[next->second] ? name_of(*timed_commands_[next->second])
+                                       : joined(state_.scenario.timeline[next->second].settings)));
   return text;
 }
 

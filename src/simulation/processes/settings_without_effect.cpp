@@ -24,8 +24,8 @@ std::set<std::string> sections_read(const Scenario* scenario = nullptr) {
   return sections;
 }
 
-bool is_switched_off(const YAML::Node& section) {
-  return section.IsMap() && section["enabled"].IsDefined() && !section["enabled"].as<bool>();
+bool is_switched_off(const YAML::Node& part) {
+  return part.IsMap() && part["enabled"].IsDefined() && !part["enabled"].as<bool>();
 }
 
 }  // namespace
@@ -34,10 +34,10 @@ std::vector<std::string> settings_without_effect(const Scenario& scenario) {
   std::vector<std::string> lines;
   const YAML::Node given = YAML::Load(dump_scenario(scenario)), usual = YAML::Load(dump_scenario(Scenario()));
   const std::set<std::string> read = sections_read(&scenario);
-  for (const std::string& section : sections_read())
-    if (section != "wind" && !read.count(section) &&
-        YAML::Dump(given[section]) != YAML::Dump(usual[section]) && !is_switched_off(given[section]))
-      lines.push_back(section + ": has no effect: no process that takes part in this scenario reads it");
+  for (const std::string& name : sections_read())
+    if (name != "wind" && !read.count(name) && YAML::Dump(given[name]) != YAML::Dump(usual[name]) &&
+        !is_switched_off(given[name]))
+      lines.push_back(name + ": has no effect: no process that takes part in this scenario reads it");
   if (!scenario.wind_segments.empty() && scenario.wind_regime.regime == WindRegimeKind::constant)
     lines.emplace_back("wind.segments: have no effect, because wind.regime is constant");
   if (scenario.get<SaltationParameters>().influx > 0 && scenario.grid.boundary == Boundary::periodic)

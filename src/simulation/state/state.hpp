@@ -115,9 +115,9 @@ struct SimulationState {
   std::optional<Gusts> gusts;  ///< of a member of an ensemble; a checkpoint does not have them
   std::uint64_t steps = 0;
   ClockOrigin clock_origin;
-  Quanta wind_reference = 0;            ///< 1st percentile of the solid surface at load
-  std::size_t next_timeline_entry = 0;  ///< of scenario.timeline
-  std::vector<Ramp> ramps;              ///< parameters that are changing
+  Quanta wind_reference = 0;  ///< 1st percentile of the solid surface at load
+  double timeline_time = -1;  ///< what scenario.timeline has until then has happened [s]
+  std::vector<Ramp> ramps;    ///< parameters that are changing
   ProcessFlags flags;
   ProcessCounts counts;
   std::array<long long, material_count> initial{};  ///< material at the start [quanta]

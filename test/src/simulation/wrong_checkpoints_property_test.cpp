@@ -96,7 +96,16 @@ TEST_F(WrongCheckpoint, NumbersOutOfRange) {
   for (const char* exponent : {"1000000", "-1000000", "-21", "-7"})
     refused("exponent", exponent, std::string("exponent: ") + exponent + " is not in [-20, -8]");
   refused("wind_reference", "2000000000", "wind_reference: 2000000000 is not in [");
-  refused("next_timeline_entry", "3", "next_timeline_entry: 3 is not in [0, 2]");
+  refused("timeline_time", "7", "timeline_time: 7 is not in [-1, 6");
+  refused("timeline_time", "soon", "timeline_time: soon is not in [-1, 6");
+  refused(
+      [](CheckpointParts& p) {  // of former versions
+        YAML::Node header = p.parsed_header();
+        header.remove("timeline_time");
+        header["next_timeline_entry"] = 3;
+        p.set_header(header);
+      },
+      "next_timeline_entry: 3 is not in [0, 2]");
   refused("bedrock_loose", "perhaps", "bedrock_loose: perhaps is not true or false");
 }
 
