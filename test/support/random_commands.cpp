@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "src/scenario/live_parameters.hpp"
+#include "src/simulation/commands/edited_layers.hpp"
 
 namespace desert_sim::test {
 
@@ -107,12 +108,12 @@ std::string RandomCommands::stroke() {
 command::EditTerrain RandomCommands::terrain_edit(const Simulation& simulation) {
   command::EditTerrain edit;
   randomise(static_cast<command::EditParameters&>(edit));
-  const char* layers[] = {"sand", "bedrock", "soil", "water", "obstacle"};
-  edit.layer = one_in(40) ? "du\xffst\n" : layers[below(5)];
+  const EditedLayer& row = edited_layers[below(std::size(edited_layers))];
+  edit.layer = one_in(40) ? "du\xffst\n" : info(row.layer).name;
   edit.stroke = stroke();
   place(edit, simulation);
   add_points(edit);
-  if (!one_in(4)) edit.value = between(0, edit.layer == "obstacle" ? 1.2 : 3);
+  if (!one_in(4)) edit.value = between(0, row.kind == EditKind::material ? 3 : 1.2);
   if (edit.shape != BrushShape::patch) return edit;
   edit.patch.columns = static_cast<int>(1 + below(9));
   edit.patch.rows = static_cast<int>(1 + below(9));

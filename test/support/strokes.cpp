@@ -1,5 +1,8 @@
 #include "test/support/strokes.hpp"
 
+#include "kernels/plants/species.hpp"
+#include "src/simulation/commands/edited_layers.hpp"
+
 namespace desert_sim::test {
 
 std::string undo_world(const std::string& name) {
@@ -53,17 +56,22 @@ Command RandomStrokes::next(const std::string& stroke) {
     return edit;
   }
   command::EditTerrain edit;
-  std::vector<std::string> layers{"sand", "bedrock", "obstacle"};
-  for (Layer layer : {Layer::soil, Layer::water})
-    if (simulation_.terrain().has(layer)) layers.emplace_back(info(layer).name);
-  edit.layer = layers[below(layers.size())];
+  std::vector<EditedLayer> layers;  // those of which strokes can be undone here
+  for (const EditedLayer& row : edited_layers) {
+    const bool living = row.layer == Layer::vegetation && scenario.get<VegetationParameters>().enabled;
+    const bool there = !row.scenarios || simulation_.terrain().has(row.layer);
+    if (there && !living && row.kind != EditKind::fleeting) layers.push_back(row);
+  }
+  const EditedLayer& row = layers[below(layers.size())];
+  const bool painted = row.kind == EditKind::painted;
+  edit.layer = info(row.layer).name;
   edit.shape = static_cast<BrushShape>(below(6));
   edit.merge = static_cast<BrushMerge>(below(7));
   edit.inner = between(0, 1);
   edit.falloff = between(0, 2);
-  edit.value = between(0, edit.layer == "obstacle" ? 1 : 2);
+  edit.value = between(0, painted ? 1 : 2);
   edit.smooth_radius = 2 * scenario.grid.cell_size;
-  edit.conserve = edit.layer != "obstacle" && below(3) == 0;
+  edit.conserve = !painted && below(3) == 0;
   edit.ring_width = 3 * scenario.grid.cell_size;
   edit.stroke = stroke;
   place(edit);

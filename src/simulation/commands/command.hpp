@@ -83,7 +83,9 @@ struct EditParameters {
 constexpr auto parameter_table(const EditParameters*) {
   using P = EditParameters;
   return std::make_tuple(
-      parameter("layer", &P::layer, "sand, soil, bedrock, water, obstacle or looseness."),
+      parameter(
+          "layer", &P::layer,
+          "sand, soil, bedrock, water, moisture, obstacle, vegetation, erosion_resistance or looseness."),
       parameter("shape", &P::shape, brush_shapes, "Shape of the brush."),
       parameter("merge", &P::merge, brush_merges, "How the brush meets what is there."),
       parameter("x", &P::x, -1e7, 1e7, "m", "Centre, in the terrain's frame."),
@@ -100,7 +102,7 @@ constexpr auto parameter_table(const EditParameters*) {
       parameter("falloff", &P::falloff, 0, 1e6, "m",
                 "Of a polygon or patch: how far inside its edge the brush has full weight."),
       parameter("value", &P::value, -1e5, 1e5, "m",
-                "Height or depth of the brush; see merge. Of obstacle and looseness [1]."),
+                "Height or depth of the brush; see merge. Of what is no material 0 … 1 [1]."),
       parameter("patch_use", &P::patch_use, patch_uses,
                 "Whether a patch holds heights that are added to value, or weights."),
       parameter("smooth_radius", &P::smooth_radius, 1e-3, 1e6, "m",
@@ -125,14 +127,13 @@ struct Patch {
   std::vector<float> values;
 };
 
-/// A brush on `layer`: sand, bedrock, obstacle, or soil and water where the terrain has some. The weight of
-/// the shape and what a merge does with it are in kernels/edit/brush_shape.hpp and brush.hpp. For sand, soil
-/// and water `value` is a depth [m]; for bedrock an elevation [m], or with add and sub a change. With
-/// `conserve`, the material comes from, or goes to, the cells within `ring_width` of the shape: what is taken
-/// in proportion to what they have, of bedrock and what is given in equal parts. The sum of all changes is
-/// then 0, to the quantum. An obstacle is no material: its `value` is 0 … 1, it cannot be conserved, and it
-/// is kept in steps of 2⁻²⁰. So is looseness, where the terrain has that layer; its edits are no strokes that
-/// undo knows, because the sand that moves changes it besides.
+/// A brush on `layer`, one of edited_layers. The weight of the shape and what a merge does with it are in
+/// kernels/edit/brush_shape.hpp and brush.hpp. For materials `value` is a depth [m]; for bedrock an elevation
+/// [m], or with add and sub a change. With `conserve`, the material comes from, or goes to, the cells within
+/// `ring_width` of the shape: what is taken in proportion to what they have, of bedrock and what is given in
+/// equal parts. The sum of all changes is then 0, to the quantum. What is no material (vegetation is the
+/// density of plants that do not live) has values 0 … 1, cannot be conserved, and is kept in steps of 2⁻²⁰.
+/// Edits of looseness are no strokes that undo knows, because the sand that moves changes it besides.
 struct EditTerrain : EditParameters {
   static constexpr const char* name = "edit_terrain";
   static constexpr std::size_t max_points = 512;
@@ -261,7 +262,7 @@ struct CellRectangle {
 struct LayerChange {
   std::string layer;
   double x = 0, y = 0, cell_size = 0;  ///< lower left corner and cells of the rectangle [m]
-  std::vector<float> values;           ///< new − old [m, or 1 of obstacle], row-major
+  std::vector<float> values;           ///< new − old [m, or 1 of shares], row-major
 };
 
 /// What an undo or redo did.

@@ -8,6 +8,7 @@
 #include "src/core/did_you_mean.hpp"
 #include "src/core/joined.hpp"
 #include "src/scenario/range_checks.hpp"
+#include "src/simulation/commands/edited_layers.hpp"
 
 namespace desert_sim {
 
@@ -20,12 +21,11 @@ using command::Point;
 constexpr double max_coordinate = 1e7;   // [m], as of a centre
 constexpr double max_pixel_value = 1e5;  // [m], as of a value
 
-bool of_shares(const EditTerrain& edit) { return edit.layer == "obstacle" || edit.layer == "looseness"; }
-
 void check_layer(const EditTerrain& edit, ValidationErrors& errors) {
-  constexpr const char* layers[] = {"sand", "bedrock", "soil", "water", "obstacle", "looseness"};
-  if (std::find(std::begin(layers), std::end(layers), edit.layer) == std::end(layers))
-    errors.add("layer", not_one_of(edit.layer, joined(layers)));
+  if (find_edited_layer(edit.layer)) return;
+  std::vector<std::string> known;
+  for (const EditedLayer& row : edited_layers) known.emplace_back(info(row.layer).name);
+  errors.add("layer", not_one_of(edit.layer, joined(known)));
 }
 
 /// Whether all points lie on one line, or in one place.
@@ -96,8 +96,7 @@ void check_patch(const EditTerrain& edit, ValidationErrors& errors) {
     }
 }
 
-/// Obstacles and looseness are 0 … 1, and so is what a brush says of them; what a patch adds or takes may be
-/// negative.
+/// Shares are 0 … 1, and so is what a brush says of them; what a patch adds or takes may be negative.
 void check_shares(const EditTerrain& edit, ValidationErrors& errors) {
   if (edit.conserve) errors.add("conserve", edit.layer + " is no material that a ring could give or take");
   if (edit.merge == BrushMerge::smooth) return;
@@ -133,16 +132,17 @@ void check_depth(const EditTerrain& edit, ValidationErrors& errors) {
 }  // namespace
 
 void require_layer(const EditTerrain& edit, const Terrain& terrain) {
-  constexpr struct {
-    Layer layer;
-    const char* have_it;
-  } layers[] = {{Layer::looseness, "with looseness.enabled or a step that fills looseness"},
-                {Layer::water, "with rain, springs, a sea or a step that fills water"},
-                {Layer::soil, "with a step that fills soil"}};
-  for (const auto& [layer, have_it] : layers)
-    if (edit.layer == info(layer).name && !terrain.has(layer))
-      throw ConfigError("edit_terrain: layer: " + edit.layer + ": this terrain has no layer " + edit.layer +
-                        " (a scenario " + have_it + " has)");
+  const EditedLayer& row = *find_edited_layer(edit.layer);
+  if (row.scenarios && !terrain.has(row.layer))
+    throw ConfigError("edit_terrain: layer: " + edit.layer + ": this terrain has no layer " + edit.layer +
+                      " (a scenario " + row.scenarios + " has)");
+}
+
+void require_still_plants(const EditTerrain& edit, const Scenario& scenario) {
+  if (edit.layer == info(Layer::vegetation).name && scenario.get<VegetationParameters>().enabled)
+    throw ConfigError(
+        "edit_terrain: layer: vegetation is what the living plants cover (vegetation.enabled); edit_plants "
+        "plants and clears them");
 }
 
 void check_edit(const EditTerrain& edit) {
@@ -152,7 +152,7 @@ void check_edit(const EditTerrain& edit) {
   check_points(edit.shape, edit.points, errors);
   check_patch(edit, errors);
   errors.throw_if_any();
-  if (of_shares(edit))
+  if (find_edited_layer(edit.layer)->kind != EditKind::material)
     check_shares(edit, errors);
   else
     check_depth(edit, errors);

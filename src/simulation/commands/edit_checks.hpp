@@ -1,6 +1,7 @@
 #pragma once
 /// What an edit must be before it is looked at any further.
 
+#include "src/scenario/scenario.hpp"
 #include "src/simulation/commands/command.hpp"
 #include "src/terrain/terrain.hpp"
 
@@ -13,6 +14,8 @@ class ValidationErrors;
 void check_edit(const command::EditTerrain& edit);
 /// Throws ConfigError if the terrain does not have the edit's layer.
 void require_layer(const command::EditTerrain& edit, const Terrain& terrain);
+/// Throws ConfigError if the edit is one of the density of still plants where plants live.
+void require_still_plants(const command::EditTerrain& edit, const Scenario& scenario);
 
 /// Adds an error if the points are not those of such a shape.
 void check_points(BrushShape shape, const std::vector<command::Point>& points, ValidationErrors& errors);

@@ -162,20 +162,20 @@ CommandResult Commands::Execution::operator()(const command::EditWind& command) 
 
 CommandResult Commands::Execution::operator()(const command::EditTerrain& command) const {
   check_stroke_name(command.stroke, "edit_terrain");
+  require_still_plants(command, state.scenario);
   pipeline.ground_changed();
   TerrainEdit edit(command, state.terrain, state.scenario.grid, state.ledger());
-  const bool had_obstacles = state.terrain.has(Layer::obstacle);
+  const bool had_layer = state.terrain.has(edit.layer());
   const ProcessFlags flags = state.flags;
   history.begin_ground();
   pipeline.edited(edit.layer());
   try {
     pipeline.adapt();  // ground that is loose needs memory
-    // Looseness comes and goes with the sand that moves, so that there is nothing to give back.
-    const bool undoable = edit.layer() != Layer::looseness;
+    const bool undoable = edit_kind(edit.layer()) != EditKind::fleeting;
     const LayerEdit change = undoable && history.remembers() ? edit.change() : LayerEdit{};
     const CommandResult result = edit.commit(with_change);
     edit.loosen(state.scenario.get<LoosenessParameters>());
-    if (undoable) history.paint(command.stroke, change, !had_obstacles && state.terrain.has(Layer::obstacle));
+    if (undoable) history.paint(command.stroke, change, !had_layer && state.terrain.has(edit.layer()));
     return result;
   } catch (...) {
     state.flags = flags;

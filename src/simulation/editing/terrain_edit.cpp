@@ -80,8 +80,9 @@ void TerrainEdit::choose_layer() {
   }
   const TerrainView view = terrain_.view();
   int other_count = 0;
-  for (const Layer layer : {Layer::bedrock, Layer::soil, Layer::sand, Layer::water})
-    if (layer != layer_) brush_.other_layers[other_count++] = view.quanta(layer);
+  if (layer_ != Layer::moisture)  // which lies in the pores of the column
+    for (const Layer layer : {Layer::bedrock, Layer::soil, Layer::sand, Layer::water})
+      if (layer != layer_) brush_.other_layers[other_count++] = view.quanta(layer);
   brush_.layer = view.quanta(layer_);
   brush_.material = material_of(layer_);
   brush_.depth = layer_ != Layer::bedrock;
@@ -92,7 +93,7 @@ void TerrainEdit::choose_layer() {
   brush_.value = (command_.value - above) * brush_.quanta_per_metre;
 }
 
-/// What an integer of the brush counts [m, or 1 of obstacles and looseness].
+/// What an integer of the brush counts [m, or 1 of shares].
 double TerrainEdit::step_size() const {
   return of_shares() ? 1 / brush::share_steps : terrain_.scale().quantum();
 }
@@ -245,7 +246,7 @@ void TerrainEdit::require_heights() const {
 CommandResult TerrainEdit::commit(bool with_change) {
   CommandResult result;
   if (of_shares()) {
-    if (layer_ == Layer::obstacle && !change().obstacles.empty()) terrain_.allocate(Layer::obstacle);
+    if (edit_kind(layer_) == EditKind::painted && !change().painted.empty()) terrain_.allocate(layer_);
     with_backend(terrain_.exec(), [&](auto& e) {
       brush::commit_shares(e, brush_, change_.data(), terrain_.view().real(layer_));
     });
@@ -281,18 +282,18 @@ LayerEdit TerrainEdit::change() const {
       if (change[k] != 0) edit.cells.push_back({brush_.cell(x, y), change[k]});
   std::sort(edit.cells.begin(), edit.cells.end(),
             [](const CellAmount& a, const CellAmount& b) { return a.cell < b.cell; });
-  if (layer_ != Layer::obstacle || edit.cells.empty()) return edit;
+  if (!of_shares() || edit.cells.empty()) return edit;
   std::vector<int> cells;
   for (const CellAmount& c : edit.cells) cells.push_back(c.cell);
   const CellList list(terrain_.exec(), cells);
   std::vector<std::uint32_t> before(cells.size(), 0);
-  if (terrain_.has(Layer::obstacle)) before = list.read(terrain_.data(Layer::obstacle));
+  if (terrain_.has(layer_)) before = list.read(terrain_.data(layer_));
   const std::vector<std::uint32_t> steps = list.read(reinterpret_cast<const std::uint32_t*>(shares_.data()));
   for (std::size_t n = 0; n < cells.size(); ++n)
-    edit.obstacles.push_back({cells[n], float_from_bits(before[n]),
-                              static_cast<float>(static_cast<Quanta>(steps[n]) + edit.cells[n].amount) *
-                                  static_cast<float>(1 / brush::share_steps),
-                              0});
+    edit.painted.push_back({cells[n], float_from_bits(before[n]),
+                            static_cast<float>(static_cast<Quanta>(steps[n]) + edit.cells[n].amount) *
+                                static_cast<float>(1 / brush::share_steps),
+                            0});
   edit.cells.clear();
   return edit;
 }

@@ -23,7 +23,7 @@ class TerrainEdit {
   /// What it changes, as the history keeps it.
   LayerEdit change() const;
   /// Makes the change. `with_change`: the result tells it cell by cell. Throws ConfigError if there is no
-  /// memory for a layer obstacle.
+  /// memory for a painted layer that was not in use.
   CommandResult commit(bool with_change);
   /// Sand that it has added lies loosely, where the layer looseness is in use; see looseness.hpp.
   void loosen(const LoosenessParameters& p);
@@ -37,7 +37,7 @@ class TerrainEdit {
   void conserve();
   void require_heights() const;
   /// Of numbers 0 … 1, which are no material.
-  bool of_shares() const { return layer_ == Layer::obstacle || layer_ == Layer::looseness; }
+  bool of_shares() const { return edit_kind(layer_) != EditKind::material; }
   double step_size() const;
   std::vector<float> change_of_rectangle() const;
 
@@ -46,7 +46,7 @@ class TerrainEdit {
   const GridParameters& grid_;
   Layer layer_;
   brush::Brush brush_{};
-  Buffer<Quanta> shares_;  ///< obstacles or looseness as the brush edits them; empty for other layers
+  Buffer<Quanta> shares_;  ///< a layer of shares as the brush edits it; empty for materials
   Buffer<brush::Point> vertices_;
   Buffer<float> patch_;
   Buffer<Quanta> change_;

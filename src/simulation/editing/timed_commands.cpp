@@ -61,7 +61,10 @@ YAML::Node with_beginning(YAML::Node given) {
 /// What can be asked of a command before it is due.
 struct Check {
   const Scenario& scenario;
-  void operator()(const command::EditTerrain& c) const { check_edit(c); }
+  void operator()(const command::EditTerrain& c) const {
+    check_edit(c);
+    require_still_plants(c, scenario);
+  }
   void operator()(const command::EditPlants& c) const { check_plant_edit(c, scenario); }
   void operator()(const command::SetWindSchedule& c) const { check_wind_schedule(c.regime, c.name); }
   template <class Other>

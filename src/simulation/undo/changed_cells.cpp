@@ -23,12 +23,12 @@ void ChangedCells::add(const MaterialChange& change) {
   layers_.push_back(std::move(of));
 }
 
-void ChangedCells::add(const std::vector<ObstacleCell>& cells, const std::vector<float>& by) {
-  OfLayer of{Layer::obstacle, {}};
-  for (std::size_t n = 0; n < cells.size(); ++n) {
+void ChangedCells::add(const PaintedLayer& layer, const std::vector<float>& by) {
+  OfLayer of{layer.layer, {}};
+  for (std::size_t n = 0; n < by.size(); ++n) {
     if (by[n] == 0) continue;
-    extend(cells[n].cell);
-    of.cells.emplace_back(cells[n].cell, by[n]);
+    extend(layer.cells[n].cell);
+    of.cells.emplace_back(layer.cells[n].cell, by[n]);
   }
   layers_.push_back(std::move(of));
 }

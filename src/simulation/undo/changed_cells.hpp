@@ -17,7 +17,7 @@ class ChangedCells {
 
   void add(const MaterialChange& change);
   /// `by`: the change of each of these cells.
-  void add(const std::vector<ObstacleCell>& cells, const std::vector<float>& by);
+  void add(const PaintedLayer& layer, const std::vector<float>& by);
   /// The cells that the plants stand in.
   void add(const PlantChange& plants);
 

@@ -7,7 +7,7 @@
 #include "src/core/quoted.hpp"
 #include "src/simulation/undo/changed_cells.hpp"
 #include "src/simulation/undo/material_return.hpp"
-#include "src/simulation/undo/obstacles.hpp"
+#include "src/simulation/undo/painted_layers.hpp"
 
 namespace desert_sim {
 
@@ -36,7 +36,8 @@ void EditHistory::keep_to_memory() {
   while (bytes() > memory_ && !strokes_.empty()) {
     Stroke& oldest = strokes_.front();
     close(oldest);
-    if (!oldest.undone && !oldest.obstacles.empty()) obstacles_are_new_ = false;  // they stay for ever
+    if (!oldest.undone)  // what it has painted stays for ever
+      for (const PaintedLayer& painted : oldest.painted) new_layers_.erase(painted.layer);
     stroke_bytes_ -= oldest.bytes();
     strokes_.pop_front();
   }
@@ -68,11 +69,11 @@ void EditHistory::paint(const std::string& name, const LayerEdit& edit, bool new
   Stroke& stroke = stroke_to_paint(name);
   const std::size_t before = stroke.bytes();
   stroke.last_action = ++actions_;
-  if (edit.layer == Layer::obstacle) {
-    obstacles_are_new_ = obstacles_are_new_ || new_layer;
-    std::vector<ObstacleCell> cells = edit.obstacles;
-    for (ObstacleCell& c : cells) c.order = actions_;
-    paint_obstacles(strokes_, stroke, cells);
+  if (edit_kind(edit.layer) == EditKind::painted) {
+    if (new_layer) new_layers_.insert(edit.layer);
+    std::vector<PaintedCell> cells = edit.painted;
+    for (PaintedCell& c : cells) c.order = actions_;
+    desert_sim::paint(strokes_, stroke, edit.layer, cells);
   } else {
     stroke.add(edit.layer, edit.cells, edit.conserve);
     loose_.painted(edit.layer, stroke.loose);
@@ -123,10 +124,10 @@ CommandResult EditHistory::redo(const std::string& name, bool with_change) {
 
 namespace {
 
-std::vector<int> cells_of(const std::vector<ObstacleCell>& obstacles) {
+std::vector<int> cells_of(const PaintedLayer& painted) {
   std::vector<int> cells;
-  cells.reserve(obstacles.size());
-  for (const ObstacleCell& c : obstacles) cells.push_back(c.cell);
+  cells.reserve(painted.cells.size());
+  for (const PaintedCell& c : painted.cells) cells.push_back(c.cell);
   return cells;
 }
 
@@ -136,9 +137,10 @@ std::vector<int> cells_of(const std::vector<ObstacleCell>& obstacles) {
 /// none.
 void EditHistory::prepare(const Stroke& stroke) {
   loose_.begin();
-  if (!stroke.obstacles.empty() && !state_.terrain.has(Layer::obstacle)) {
-    state_.terrain.allocate(Layer::obstacle);
-    obstacles_are_new_ = true;
+  for (const PaintedLayer& painted : stroke.painted) {
+    if (state_.terrain.has(painted.layer)) continue;
+    state_.terrain.allocate(painted.layer);
+    new_layers_.insert(painted.layer);
   }
   const ProcessFlags flags = state_.flags;
   for (Layer layer : {Layer::bedrock, Layer::soil})
@@ -147,20 +149,24 @@ void EditHistory::prepare(const Stroke& stroke) {
     pipeline_.adapt();  // ground that is loose needs memory
   } catch (...) {
     state_.flags = flags;
-    release_obstacles();
+    release_layers();
     throw;
   }
   state_.flags = flags;
 }
 
-/// A terrain that had no obstacles before its strokes has none when all of them are undone.
-void EditHistory::release_obstacles() {
-  const bool painted = std::any_of(strokes_.begin(), strokes_.end(),
-                                   [](const Stroke& s) { return !s.undone && !s.obstacles.empty(); });
-  if (!obstacles_are_new_ || painted) return;
-  state_.exec().synchronise();  // steps in flight work with it
-  state_.terrain.set_allocated(Layer::obstacle, false);
-  obstacles_are_new_ = false;
+/// A terrain that did not have a painted layer before its strokes does not have it when all are undone.
+void EditHistory::release_layers() {
+  for (auto layer = new_layers_.begin(); layer != new_layers_.end();) {
+    if (std::any_of(strokes_.begin(), strokes_.end(),
+                    [&](const Stroke& s) { return !s.undone && s.changed(*layer); })) {
+      ++layer;
+      continue;
+    }
+    state_.exec().synchronise();  // steps in flight work with it
+    state_.terrain.set_allocated(*layer, false);
+    layer = new_layers_.erase(layer);
+  }
 }
 
 CommandResult EditHistory::turn(Stroke& stroke, bool with_change) {
@@ -168,23 +174,23 @@ CommandResult EditHistory::turn(Stroke& stroke, bool with_change) {
   prepare(stroke);
   const std::size_t before = stroke.bytes();
   std::optional<MaterialTurn> materials;
-  std::optional<CellList> obstacles;
+  std::vector<CellList> painted;
   CommandResult result;
   try {
     materials.emplace(stroke.materials, state_);
-    obstacles.emplace(state_.exec(), cells_of(stroke.obstacles));
+    for (const PaintedLayer& layer : stroke.painted) painted.emplace_back(state_.exec(), cells_of(layer));
     result.returned.missing_plants = population_.turn_back(stroke.plants);
   } catch (...) {
-    release_obstacles();
+    release_layers();
     throw;
   }
   pipeline_.ground_changed();
   const MaterialReturns moved = materials->commit();
   ChangedCells cells(state_);
   for (const MaterialChange& change : stroke.materials) cells.add(change);
-  if (!stroke.obstacles.empty())
-    cells.add(stroke.obstacles,
-              turn_obstacles(strokes_, stroke, stroke.obstacles, *obstacles, state_.terrain));
+  for (std::size_t n = 0; n < painted.size(); ++n)
+    cells.add(stroke.painted[n],
+              desert_sim::turn(strokes_, stroke, stroke.painted[n], painted[n], state_.terrain));
   cells.add(stroke.plants);
   result.plants = static_cast<long long>(stroke.plants.added.size()) -
                   static_cast<long long>(stroke.plants.removed.size());
@@ -205,7 +211,7 @@ CommandResult EditHistory::turn(Stroke& stroke, bool with_change) {
   result.changed_cells = cells.rectangle();
   if (with_change) result.changes = cells.changes();
   close(stroke);
-  release_obstacles();
+  release_layers();
   recount(stroke, before);
   keep_to_memory();
   result.undoable = undoable();

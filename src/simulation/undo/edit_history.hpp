@@ -3,6 +3,7 @@
 /// world that moves. It belongs to a simulation and ends with it; checkpoints do not have it.
 
 #include <deque>
+#include <set>
 #include <string>
 #include <unordered_map>
 #include <vector>
@@ -40,7 +41,7 @@ class EditHistory {
 
   /// Before an edit changes the ground.
   void begin_ground() { loose_.begin(); }
-  /// `new_layer`: the edit has brought the layer obstacle into use.
+  /// `new_layer`: the edit has brought its layer into use.
   void paint(const std::string& stroke, const LayerEdit& edit, bool new_layer);
   void paint(const std::string& stroke, const Population::Edit& plants);
 
@@ -54,7 +55,7 @@ class EditHistory {
   CommandResult turn(Stroke& stroke, bool with_change);
   Stroke& stroke_to_paint(const std::string& name);
   void prepare(const Stroke& stroke);
-  void release_obstacles();
+  void release_layers();
   void close(const Stroke& stroke);
   void forget_oldest();
   void keep_to_memory();
@@ -68,7 +69,7 @@ class EditHistory {
   std::deque<Stroke> strokes_;                     ///< the oldest first
   std::unordered_map<std::string, Stroke*> open_;  ///< those that further edits belong to
   std::uint64_t actions_ = 0;                      ///< edits, undos and redos so far
-  bool obstacles_are_new_ = false;                 ///< the layer is in use because of these strokes alone
+  std::set<Layer> new_layers_;                     ///< painted ones, in use because of these strokes alone
   std::size_t memory_ = 0, stroke_bytes_ = 0;
 };
 

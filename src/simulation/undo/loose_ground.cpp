@@ -6,7 +6,7 @@
 namespace desert_sim {
 
 namespace {
-constexpr Layer edited_layers[] = {Layer::bedrock, Layer::soil};
+constexpr Layer sliding_layers[] = {Layer::bedrock, Layer::soil};
 }
 
 std::uint64_t mark_of(std::uint64_t count) {  // splitmix64, by Sebastiano Vigna
@@ -30,10 +30,10 @@ void LooseGround::add(std::size_t which, std::uint64_t by, LooseMark& mark) {
 }
 
 void LooseGround::painted(Layer layer, LooseMark& mark) {
-  const auto* const which = std::find(std::begin(edited_layers), std::end(edited_layers), layer);
-  if (which == std::end(edited_layers)) return;
+  const auto* const which = std::find(std::begin(sliding_layers), std::end(sliding_layers), layer);
+  if (which == std::end(sliding_layers)) return;
   if (mark.epoch != epoch_) mark = {epoch_, {}, mark.epoch > 0};
-  add(static_cast<std::size_t>(which - edited_layers), mark_of(++marks_), mark);
+  add(static_cast<std::size_t>(which - sliding_layers), mark_of(++marks_), mark);
   set_flags();
 }
 
@@ -44,7 +44,7 @@ void LooseGround::returned(const Stroke& stroke, bool complete, LooseMark& mark)
   LooseMark now{epoch_, {}, false};
   const std::uint64_t own = fresh ? mark_of(++marks_) : 0;
   for (std::size_t which = 0; which < sums_.size(); ++which)
-    if (stroke.changed(edited_layers[which])) add(which, own - (cancels ? mark.marks[which] : 0), now);
+    if (stroke.changed(sliding_layers[which])) add(which, own - (cancels ? mark.marks[which] : 0), now);
   mark = now;
   set_flags();
 }
@@ -52,7 +52,7 @@ void LooseGround::returned(const Stroke& stroke, bool complete, LooseMark& mark)
 void LooseGround::set_flags() {
   state_.flags = at_rest_flags_;
   for (std::size_t which = 0; which < sums_.size(); ++which)
-    if (sums_[which] != 0) pipeline_.edited(edited_layers[which]);
+    if (sums_[which] != 0) pipeline_.edited(sliding_layers[which]);
 }
 
 }  // namespace desert_sim

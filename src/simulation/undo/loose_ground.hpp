@@ -34,7 +34,7 @@ class LooseGround {
   std::uint64_t epoch_ = 0, marks_ = 0;
   std::uint64_t steps_ = 0;              ///< of the epoch
   ProcessFlags at_rest_flags_;           ///< where the sums are 0
-  std::array<std::uint64_t, 2> sums_{};  ///< of `edited_layers`
+  std::array<std::uint64_t, 2> sums_{};  ///< of `sliding_layers`
 };
 
 }  // namespace desert_sim

@@ -10,7 +10,9 @@ namespace desert_sim {
 
 namespace {
 
-constexpr Layer column_layers[] = {Layer::bedrock, Layer::soil, Layer::sand, Layer::water};
+/// Those of the column, whose heights add up; and the others.
+constexpr Layer column_layers[] = {Layer::bedrock, Layer::soil, Layer::sand, Layer::water},
+                other_layers[] = {Layer::moisture};
 constexpr Quanta highest = wall_height - 1;
 
 std::vector<int> cells_of(const std::vector<MaterialChange>& changes) {
@@ -27,8 +29,8 @@ class Columns {
  public:
   Columns(const std::vector<int>& cells, const Terrain& terrain)
       : cells_(cells), list_(terrain.exec(), cells), terrain_(terrain) {
-    for (Layer layer : column_layers)
-      if (terrain.has(layer)) depths_.push_back({layer, as_quanta(list_.read(terrain.data(layer)))});
+    for (Layer layer : column_layers) read(layer, true);
+    for (Layer layer : other_layers) read(layer, false);
   }
 
   std::size_t place_of(int cell) const {
@@ -39,10 +41,12 @@ class Columns {
     const Quanta held = at(layer)[place];
     return std::max(0, layer == Layer::bedrock ? held + highest : held);
   }
-  /// What can be put on it: neither the layer nor the column may rise above the highest height.
+  /// What can be put on it: neither the layer nor its column may rise above the highest height.
   Quanta room(Layer layer, std::size_t place) const {
     long long height = 0;
-    for (const auto& depths : depths_) height += depths.quanta[place];
+    for (const auto& depths : depths_)
+      if (depths.in_column) height += depths.quanta[place];
+    if (std::count(std::begin(other_layers), std::end(other_layers), layer) > 0) height = 0;
     const long long most = highest - std::max<long long>(height, at(layer)[place]);
     return static_cast<Quanta>(std::clamp<long long>(most, 0, highest));
   }
@@ -55,8 +59,13 @@ class Columns {
  private:
   struct Depths {
     Layer layer;
+    bool in_column;
     std::vector<Quanta> quanta;
   };
+  void read(Layer layer, bool in_column) {
+    if (terrain_.has(layer))
+      depths_.push_back({layer, in_column, as_quanta(list_.read(terrain_.data(layer)))});
+  }
   static std::vector<Quanta> as_quanta(const std::vector<std::uint32_t>& words) {
     return std::vector<Quanta>(words.begin(), words.end());
   }

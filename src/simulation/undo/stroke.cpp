@@ -16,6 +16,8 @@ Material material_of(Layer layer) {
       return Material::sand;
     case Layer::water:
       return Material::water;
+    case Layer::moisture:
+      return Material::moisture;
     default:
       throw Error(std::string("the layer ") + info(layer).name + " is no material that brushes edit");
   }
@@ -68,15 +70,22 @@ bool Stroke::has_room(Layer layer, const std::vector<CellAmount>& cells) const {
 }
 
 bool Stroke::changed(Layer layer) const {
-  return std::any_of(materials.begin(), materials.end(),
-                     [layer](const MaterialChange& change) { return change.layer == layer; });
+  const auto is_it = [layer](const auto& change) { return change.layer == layer; };
+  return std::any_of(materials.begin(), materials.end(), is_it) ||
+         std::any_of(painted.begin(), painted.end(), is_it);
+}
+
+std::vector<PaintedCell>& Stroke::painted_in(Layer layer) {
+  const auto at = std::find_if(painted.begin(), painted.end(),
+                               [layer](const PaintedLayer& other) { return other.layer == layer; });
+  return (at == painted.end() ? painted.emplace_back(PaintedLayer{layer, {}}) : *at).cells;
 }
 
 std::size_t Stroke::bytes() const {
   std::size_t total = sizeof(Stroke) + name.size();
   for (const MaterialChange& change : materials)
     total += sizeof(MaterialChange) + change.cells.size() * sizeof(CellAmount);
-  total += obstacles.size() * sizeof(ObstacleCell);
+  for (const PaintedLayer& layer : painted) total += layer.cells.size() * sizeof(PaintedCell);
   total += (plants.added.size() + plants.removed.size() + plants.passed.size()) * sizeof(ChangedPlant);
   return total;
 }

@@ -10,6 +10,7 @@
 #include "kernels/field/layers.hpp"
 #include "kernels/field/ledger.hpp"
 #include "kernels/plants/population.hpp"
+#include "src/simulation/commands/edited_layers.hpp"
 
 namespace desert_sim {
 
@@ -30,20 +31,25 @@ struct MaterialChange {
 /// Material::… of a layer that brushes edit.
 Material material_of(Layer layer);
 
-/// A cell of the layer obstacle. Of all strokes that are not undone, the one with the greatest `order` says
-/// what the cell is, and its `before` is what it would be without that stroke.
-struct ObstacleCell {
+/// A cell of a painted layer. Of all strokes that are not undone, the one with the greatest `order` says what
+/// the cell is, and its `before` is what it would be without that stroke.
+struct PaintedCell {
   int cell;
   float before, after;
   std::uint64_t order;  ///< grows with each edit
+};
+
+struct PaintedLayer {
+  Layer layer;
+  std::vector<PaintedCell> cells;  ///< in the order of cells
 };
 
 /// What one edit changed in its layer.
 struct LayerEdit {
   Layer layer = Layer::sand;
   bool conserve = false;
-  std::vector<CellAmount> cells;        ///< of a layer of material, in the order of cells
-  std::vector<ObstacleCell> obstacles;  ///< of the layer obstacle, in the order of cells; without `order`
+  std::vector<CellAmount> cells;     ///< of a layer of material, in the order of cells
+  std::vector<PaintedCell> painted;  ///< of a painted layer, in the order of cells; without `order`
 };
 
 using PlantWords = std::array<std::uint32_t, plants::column_count>;
@@ -72,7 +78,7 @@ struct Stroke {
   bool undone = false;
   std::uint64_t last_action = 0;  ///< grows with each edit, undo and redo
   std::vector<MaterialChange> materials;
-  std::vector<ObstacleCell> obstacles;  ///< in the order of cells
+  std::vector<PaintedLayer> painted;
   PlantChange plants;
   LooseMark loose;
 
@@ -81,6 +87,8 @@ struct Stroke {
   /// Whether they can be added: what a cell got or lost in all stays within the range of its integer.
   bool has_room(Layer layer, const std::vector<CellAmount>& cells) const;
   bool changed(Layer layer) const;
+  /// The cells of a painted layer; an empty list to begin with.
+  std::vector<PaintedCell>& painted_in(Layer layer);
   /// What it counts for in the memory of the history. It depends on nothing but what it holds, because a
   /// replay has to forget the same strokes.
   std::size_t bytes() const;

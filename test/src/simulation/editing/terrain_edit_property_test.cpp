@@ -16,14 +16,15 @@ using command::EditTerrain;
 const char* const rough =
     ", noise: {layer: bedrock, low: 30, high: 33, scale: 3}, noise: {layer: sand, low: "
     "1.5, high: 4, scale: 2, seed: 3}, noise: {layer: soil, low: 0.5, high: 2, scale: "
-    "3, seed: 4}, noise: {layer: water, low: 0.2, high: 1, scale: 3, seed: 5}";
+    "3, seed: 4}, noise: {layer: water, low: 0.2, high: 1, scale: 3, seed: 5}, noise: {layer: moisture, "
+    "low: 0.1, high: 1, scale: 3, seed: 6}";
 
 /// Every shape with every merge on every layer.
 std::vector<EditTerrain> all_edits() {
   std::vector<EditTerrain> edits;
   for (const EditTerrain& shape : test::one_of_each_shape())
     for (int merge = 0; merge < static_cast<int>(std::size(brush_merges)); ++merge)
-      for (const char* layer : {"sand", "soil", "bedrock", "water"}) {
+      for (const char* layer : {"sand", "soil", "bedrock", "water", "moisture"}) {
         EditTerrain e = shape;
         e.merge = static_cast<BrushMerge>(merge);
         e.layer = layer;
@@ -283,6 +284,52 @@ TEST_P(Edits, OfSoilSlideOnAfterACheckpoint) {
   EXPECT_EQ(resumed.simulation().state().hash(), live.simulation().state().hash());
 }
 
+/// A layer that is painted in an empty terrain is the layer that a scenario begins with: every process reads
+/// it, from the next step on. Undone, it is as if it had never been.
+TEST_P(Edits, OfPaintedLayersAreWhatAScenarioWithTheLayerHas) {
+  const std::string bare =
+      "grid: {width: 40, height: 32}\nterrain: [noise: {layer: bedrock, low: 0, high: 3, scale: 6}, noise: "
+      "{layer: sand, low: -1, high: 1}";
+  const std::string wind = "]\nwind: {speed: 8}\nabrasion: {rate: 0.05}\n";
+  for (const char* layer : {"vegetation", "erosion_resistance", "obstacle"}) {
+    SCOPED_TRACE(layer);
+    const auto without = simulation(bare + wind), painted = simulation(bare + wind),
+               with = simulation(bare + ", uniform: {layer: " + layer + ", value: 0.625}" + wind);
+    EditTerrain edit;
+    edit.layer = layer;
+    edit.shape = BrushShape::rectangle;
+    edit.merge = BrushMerge::replace;
+    edit.x = 20, edit.y = 16, edit.radius = 20, edit.radius_y = 16, edit.inner = 1;
+    edit.value = 0.625;
+    test::run(*without, 3);
+    painted->commands().history().set_memory(default_undo_memory);
+    const std::uint64_t start = painted->state().hash();
+    const CommandResult result = painted->apply(edit, true);
+    EXPECT_EQ(result.volume_m3, 0);
+    ASSERT_EQ(result.changes.size(), 1u);
+    EXPECT_EQ(result.changes[0].values, std::vector<float>(40 * 32, 0.625f));
+    EXPECT_EQ(painted->state().hash(), with->state().hash());
+    painted->apply(command::Undo{});
+    EXPECT_EQ(painted->state().hash(), start);
+    painted->apply(command::Redo{});
+    test::run(*painted, 3);
+    test::run(*with, 3);
+    EXPECT_EQ(painted->state().hash(), with->state().hash());
+    EXPECT_NE(painted->state().hash(), without->state().hash()) << "the layer has an effect";
+  }
+}
+
+TEST_P(Edits, OfVegetationAreRefusedWherePlantsLive) {
+  const auto s =
+      simulation(test::edit_world("open") + "vegetation: {enabled: true}\nspecies: [{preset: bush}]\n");
+  EditTerrain edit = test::edit_at(8, 8, BrushShape::circle);
+  edit.layer = "vegetation";
+  EXPECT_NE(test::refusal(*s, edit).find("edit_plants plants and clears them"), std::string::npos);
+  edit.layer = "moisture";
+  EXPECT_FALSE(s->terrain().has(Layer::moisture));
+  EXPECT_NE(test::refusal(*s, edit).find("with moisture.enabled"), std::string::npos);
+}
+
 TEST_P(Edits, ReplayFromTheirJournalToTheSameHash) {
   const test::TemporaryFolder folder;
   const Scenario scenario = test::scenario_of(test::edit_world("periodic", rough));
@@ -304,6 +351,7 @@ TEST_P(Edits, ReplayFromTheirJournalToTheSameHash) {
     while (again.ticks() < entry.tick) again.step();
     again.apply(entry.command);
   }
+  while (again.ticks() < journal.ticks) again.step();
   EXPECT_EQ(again.simulation().state().hash(), hash);
 }
 

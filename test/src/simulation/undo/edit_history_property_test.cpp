@@ -131,7 +131,7 @@ TEST_P(UndoIn, AWorldThatMovesTakesWhatIsThereAndTellsIt) {
     const double cell = simulation.scenario().grid.cell_size,
                  quantum = simulation.terrain().scale().quantum();
     int missing = 0;
-    for (int n = 0; n < 240; ++n) {
+    for (int n = 0; n < 400; ++n) {
       SCOPED_TRACE(std::string(world) + ", " + std::to_string(n));
       accepted(*s, random.next(random.below(2) ? "a" : ""));
       steps(*s, 1);
