@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "test/support/relief_shape.hpp"
 #include "test/support/running.hpp"
@@ -171,6 +172,50 @@ TEST(Desertscape, YardangsLieAlongTheWind) {
   EXPECT_GT(o.coherence, 0.25);
   EXPECT_LT(first.coherence, 0.2);
   EXPECT_GT(worn[0] / n[0], 2 * worn[1] / n[1]);
+  scene.expect_balanced();
+}
+
+/// Each stage of the session has what its events make, and the books close through all of them.
+TEST(Desertscape, TheSessionGoesThroughItsStages) {
+  Running scene(shipped("desertscape_session", cells(128, 96)));
+  const auto mean = [](const Field& f) {
+    return std::accumulate(f.values.begin(), f.values.end(), 0.0) / static_cast<double>(f.values.size());
+  };
+  const Orientation rock_before = crest_orientation(scene.field(Layer::bedrock), 2);
+  const Field barchans = scene.run(600).field(Layer::sand);
+  const auto bare =
+      std::count_if(barchans.values.begin(), barchans.values.end(), [](float d) { return d < 0.02f; });
+  const Field rock = scene.run(600).field(Layer::bedrock);
+  const Orientation yardangs = crest_orientation(rock, 2);
+  const Field worn = scene.field(Layer::sand), ridges = scene.run(300).field(Layer::sand);
+  const Steepest lee = steepest(without_slabs(scene.field(Layer::elevation)), 0.5);
+  DESERT_REPORT(
+      "bare %.2f; rock at %.1f degrees (coherence %.2f, before %.2f); sand %.2f, then %.2f m; lee %.1f "
+      "degrees to %.0f",
+      static_cast<double>(bare) / (128 * 96), yardangs.crest_deg, yardangs.coherence, rock_before.coherence,
+      mean(worn), mean(ridges), lee.slope_deg, lee.direction_deg);
+  EXPECT_GT(bare, 128 * 96 * 0.3);
+  EXPECT_LT(line_angle_between_deg(yardangs.crest_deg, 0), 10);
+  EXPECT_GT(yardangs.coherence, rock_before.coherence + 0.2);
+  EXPECT_NEAR(mean(ridges) - mean(worn), 3, 0.1);
+  EXPECT_LT(angle_between_deg(lee.direction_deg, 0), 20);
+
+  const Field sand = scene.run(300).field(Layer::sand), plants = scene.field(Layer::vegetation);
+  double held = 0, planted = 0;
+  for (std::size_t i = 0; i < sand.values.size(); ++i)
+    if (plants.values[i] > 0.5f) held += static_cast<double>(sand.values[i]), planted += 1;
+  const Field mega = scene.run(600).field(Layer::elevation);
+  const Field cut = scene.run(1).field(Layer::sand);
+  const Field domes = scene.run(1199).field(Layer::elevation);
+  const std::size_t faces = slip_face_directions(without_slabs(domes)).size();
+  DESERT_REPORT("sand among plants %.2f m (mean %.2f); %.2f, then %.2f m rms; slip faces to %zu sides",
+                held / planted, mean(sand), roughness(without_slabs(scene.field(Layer::elevation))),
+                roughness(mega), faces);
+  EXPECT_GT(held / planted, 1.3 * mean(sand));
+  EXPECT_GT(roughness(mega), 1.15 * roughness(ridges)) << "dunes grow";
+  EXPECT_LT(*std::max_element(cut.values.begin(), cut.values.end()), 6) << "4 m, and a step";
+  EXPECT_EQ(mean(scene.field(Layer::vegetation)), 0);
+  EXPECT_GE(faces, 3u);
   scene.expect_balanced();
 }
 
