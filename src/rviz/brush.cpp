@@ -1,11 +1,34 @@
 #include "src/rviz/brush.hpp"
 
+#include <algorithm>
+
 namespace desert_sim {
 
 namespace {
 
 using Material = Brush::Material;
 using Operation = Brush::Operation;
+
+struct MaterialRow {
+  const char* label;  ///< in the tool's property
+  const char* layer;  ///< of ~edit_terrain, which these rows are in the order of Brush::Material for
+  bool share;
+  bool flattens;  ///< ~query_terrain knows the layer where a stroke begins
+  bool smooths;
+};
+constexpr MaterialRow materials[] = {
+    {"Sand", "sand", false, true, true},
+    {"Rock", "bedrock", false, true, true},
+    {"Soil", "soil", false, true, true},
+    {"Water", "water", false, true, true},
+    {"Moisture", "moisture", false, true, true},
+    {"Plants", "plants", false, false, false},
+    {"Vegetation", "vegetation", true, true, true},
+    {"Erosion Resistance", "erosion_resistance", true, false, true},
+    {"Looseness", "looseness", true, false, true},
+    {"Obstacle", "obstacle", true, false, false},
+};
+const MaterialRow& row(Material material) { return materials[static_cast<int>(material)]; }
 
 template <class Request>
 void set_shape(Request& request, const render::Capsule& capsule, double radius) {
@@ -26,16 +49,25 @@ void set_shape(Request& request, const render::Capsule& capsule, double radius) 
 
 }  // namespace
 
-const char* layer_of(Material material) {
-  constexpr const char* names[] = {"sand", "bedrock", "soil", "water", "plants", "obstacle"};
-  return names[static_cast<int>(material)];
+std::vector<const char*> brush_materials() {
+  std::vector<const char*> labels;
+  for (const MaterialRow& material : materials) labels.push_back(material.label);
+  return labels;
 }
 
+const char* layer_of(Material material) { return row(material).layer; }
+
+bool is_share(Material material) { return row(material).share; }
+
 std::string problem_of(const Brush& brush) {
-  const bool shapes = brush.operation == Operation::flatten || brush.operation == Operation::smooth;
-  if (shapes && (brush.material == Material::plants || brush.material == Material::obstacle))
-    return std::string("A brush adds or removes ") + layer_of(brush.material) +
-           ": choose the Operation Add or Remove.";
+  const bool can = brush.operation == Operation::flatten  ? row(brush.material).flattens
+                   : brush.operation == Operation::smooth ? row(brush.material).smooths
+                                                          : true;
+  if (!can)
+    return std::string("A brush adds ") +
+           (row(brush.material).smooths ? "and removes, or smooths, " : "or removes ") +
+           layer_of(brush.material) + ": choose " +
+           (row(brush.material).smooths ? "another Operation." : "the Operation Add or Remove.");
   if (brush.material == Material::plants && brush.operation == Operation::add && brush.species.empty())
     return "Planting needs a Species, one of the scenario's (rostopic echo -n 1 <node>/plants lists them).";
   return "";
@@ -59,7 +91,8 @@ EditTerrain::Request terrain_request(const Brush& brush, const render::Capsule& 
     case Operation::add:
     case Operation::remove:
       request.merge = adds ? "add" : "sub";
-      request.value = brush.strength * share_of_depth(capsule, brush.radius, brush.inner);
+      request.value = (is_share(brush.material) ? std::min(brush.strength, 1.0) : brush.strength) *
+                      share_of_depth(capsule, brush.radius, brush.inner);
       break;
     case Operation::flatten:
       request.merge = "replace";

@@ -45,18 +45,18 @@ BrushTool::BrushTool() {
                                    parent, SLOT(choose_node()), this);
   material_ = new rviz::EnumProperty("Material", "Sand", "What is painted.", parent);
   int option = 0;
-  for (const char* const name : {"Sand", "Rock", "Soil", "Water", "Plants", "Obstacle"})
-    material_->addOption(name, option++);
+  for (const char* const name : brush_materials()) material_->addOption(name, option++);
   operation_ = new rviz::EnumProperty(
       "Operation", "Add", "Flatten makes the layer as deep (rock: as high) as where the stroke began.",
       parent);
   option = 0;
   for (const char* const name : {"Add", "Remove", "Flatten", "Smooth"}) operation_->addOption(name, option++);
   radius_ = number("Radius", 5, 0.01f, 1e4f, "Radius of the brush [m]; the wheel changes it.", parent);
-  strength_ = number("Strength", 0.5f, 1e-4f, 1e3f,
-                     "Depth that one pass of the brush adds or removes in its middle [m]; Ctrl and the wheel "
-                     "change it.",
-                     parent);
+  strength_ =
+      number("Strength", 0.5f, 1e-4f, 1e3f,
+             "What one pass of the brush adds or removes in its middle: a depth [m], or of vegetation, "
+             "erosion resistance and looseness a share of 1; Ctrl and the wheel change it.",
+             parent);
   inner_ = number("Inner Fraction", 0.5f, 0, 1,
                   "Full strength up to this fraction of the radius, from where it falls to 0.", parent);
   species_ = new rviz::StringProperty(

@@ -187,6 +187,10 @@ double EditClient::level_at(const Stroke& stroke, const render::Place& place) {
       return sample.soil;
     case Brush::Material::water:
       return sample.water;
+    case Brush::Material::moisture:
+      return sample.moisture;
+    case Brush::Material::vegetation:
+      return sample.vegetation;
     default:
       return sample.sand;
   }
@@ -211,9 +215,7 @@ void EditClient::paint(Stroke& stroke, const render::Capsule& capsule) {
     if (brush.material == Brush::Material::plants)
       report(true, number(static_cast<double>(stroke.plants)) + " plants");
     else
-      report(
-          true,
-          layer + (brush.material == Brush::Material::obstacle ? "" : " " + number(stroke.volume) + " m³"));
+      report(true, layer + (is_share(brush.material) ? "" : " " + number(stroke.volume) + " m³"));
   } catch (const ConfigError& error) {
     if (!stroke.failed) report(false, error.what());
     stroke.failed = true;

@@ -82,6 +82,35 @@ TEST_F(RvizTools, AStrokeIsSeenWhileItIsPainted) {
   wait_for(brush);
 }
 
+/// What is no material: shares of 1, which undo takes back.
+TEST_F(RvizTools, VegetationAndErosionResistanceArePaintedAndUndone) {
+  rviz::Tool* const brush = use_brush();
+  const std::string start = hash();
+  set_tool(brush, "Strength", 0.6);
+  for (const auto& [material, name] :
+       {std::pair("Vegetation", "vegetation"), {"Erosion Resistance", "erosion_resistance"}}) {
+    set_tool(brush, "Material", material);
+    drag({40, 10}, {90, 40}, 25);
+    wait_for(brush);
+    const std::vector<float> painted = layer(name);
+    EXPECT_NEAR(static_cast<double>(at(painted, {65, 25})), 0.6, 0.15) << text(brush, "report");
+    EXPECT_EQ(at(painted, {20, 60}), 0);
+    EXPECT_EQ(text(brush, "report"), name);
+  }
+  set_tool(brush, "Operation", "Flatten");
+  drag({40, 10}, {60, 10}, 5);
+  EXPECT_NE(text(brush, "report").find("another Operation"), std::string::npos) << text(brush, "report");
+  set_tool(brush, "Material", "Vegetation");
+  drag({65, 25}, {100, 60}, 20);
+  wait_for(brush);
+  EXPECT_NEAR(static_cast<double>(at(layer("vegetation"), {90, 50})), 0.6, 0.15)
+      << "as dense as where it began";
+  save("vegetation");
+  for (int n = 0; n < 3; ++n) key(Qt::Key_Z);
+  wait_for(brush);
+  EXPECT_EQ(hash(), start);
+}
+
 TEST_F(RvizTools, ObstaclesRockAndRefusals) {
   rviz::Tool* const brush = use_brush();
   const std::string start = hash();
