@@ -86,8 +86,8 @@ void flatten(const YAML::Node& node, const std::string& path, Settings& settings
   settings.push_back(path + "=" + out.c_str());
 }
 
-Scenario read_scenario(const std::string& source, const NodeParameters& node, const YAML::Node& sections,
-                       const Settings& settings) {
+Scenario read_scenario_of(const std::string& source, const NodeParameters& node, const YAML::Node& sections,
+                          const Settings& settings) {
   if (node.scenario.empty()) {
     if (sections.size() == 0)
       throw ConfigError(
@@ -105,6 +105,13 @@ Scenario read_scenario(const std::string& source, const NodeParameters& node, co
   flatten(sections, "", all);
   all.insert(all.end(), settings.begin(), settings.end());
   return load_scenario(scenario_file(node.scenario), all);
+}
+
+Scenario read_scenario(const std::string& source, const NodeParameters& node, const YAML::Node& sections,
+                       const Settings& settings) {
+  Scenario scenario = read_scenario_of(source, node, sections, settings);
+  if (!node.script.empty()) add_script(scenario, node.script);
+  return scenario;
 }
 
 // ---- The page.

@@ -17,7 +17,7 @@ constexpr const char* backend_choices[] = {"auto", "cpu", "cuda"};
 
 /// Parameters of the node itself. Those of its topics are PublisherParameters and MapParameters.
 struct NodeParameters {
-  std::string scenario;
+  std::string scenario, script;
   bool all_raster_formats = false;
   std::string frame_id = "map";
   std::string center_frame = "~terrain_center";
@@ -42,6 +42,10 @@ constexpr auto parameter_table(const NodeParameters*) {
       parameter("scenario", &P::scenario,
                 "A file, or the bare name of one in the package's config/scenarios; empty: the scenario's "
                 "sections are parameters."),
+      parameter(
+          "script", &P::script,
+          "A YAML file with a list of what happens when, which is added to the scenario's run.timeline; "
+          "empty: none."),
       parameter("all_raster_formats", &P::all_raster_formats,
                 "Whether the rasters of this scenario may have every format that GDAL reads, also those that "
                 "name other files or hosts (VRT, WMS, /vsi paths); never those of what services load."),

@@ -28,6 +28,7 @@ struct PublisherParameters {
   double micro_relief_rate = 10;
   double wind_rate = 2;
   int wind_decimation = 1;
+  double wind_features_rate = 2;
   double wind_markers_rate = 2;
   int wind_markers_count = 180;
   double points_rate = 4;
@@ -63,6 +64,7 @@ constexpr auto parameter_table(const PublisherParameters*) {
       parameter("wind_rate", &P::wind_rate, 0, 1000, "Hz", "~wind."),
       parameter("wind_decimation", &P::wind_decimation, 1, 65536, "cells",
                 "Cells of the terrain in a row that are averaged into one of ~wind."),
+      parameter("wind_features_rate", &P::wind_features_rate, 0, 1000, "Hz", "~wind_features."),
       parameter("wind_markers_rate", &P::wind_markers_rate, 0, 1000, "Hz", "~wind_markers."),
       parameter("wind_markers_count", &P::wind_markers_count, 1, 100000, "1", "At most so many arrows."),
       parameter("points_rate", &P::points_rate, 0, 1000, "Hz", "~points."),

@@ -15,6 +15,7 @@ using TopicList = std::vector<std::unique_ptr<Topic>>;
 void add_elevation_topics(const TopicContext& context, TopicList& topics);  // in layer_topics.cpp
 void add_layer_topics(const TopicContext& context, TopicList& topics);
 void add_wind_topic(const TopicContext& context, TopicList& topics);
+void add_wind_features_topic(const TopicContext& context, TopicList& topics);
 void add_wind_markers_topic(const TopicContext& context, TopicList& topics);
 void add_points_topics(const TopicContext& context, TopicList& topics);
 void add_plants_topics(const TopicContext& context, TopicList& topics);
@@ -27,17 +28,18 @@ void add_micro_relief_topic(const TopicContext& context, TopicList& topics);
 /// All topics, in the order in which those that are due at the same time are published.
 inline TopicList make_topics(const TopicContext& context) {
   TopicList topics;
-  add_elevation_topics(context, topics);    // ~elevation_updates, ~elevation
-  add_layer_topics(context, topics);        // ~layers/<name>_updates, ~layers/<name>
-  add_micro_relief_topic(context, topics);  // ~micro_relief
-  add_wind_topic(context, topics);          // ~wind
-  add_wind_markers_topic(context, topics);  // ~wind_markers
-  add_points_topics(context, topics);       // ~points, ~water_points
-  add_plants_topics(context, topics);       // ~plants, ~plant_markers
-  add_grid_map_topic(context, topics);      // ~grid_map
-  add_local_map_topic(context, topics);     // ~local_map
-  add_costmap_topics(context, topics);      // ~costmap_updates, ~costmap
-  add_image_topic(context, topics);         // ~image
+  add_elevation_topics(context, topics);     // ~elevation_updates, ~elevation
+  add_layer_topics(context, topics);         // ~layers/<name>_updates, ~layers/<name>
+  add_micro_relief_topic(context, topics);   // ~micro_relief
+  add_wind_topic(context, topics);           // ~wind
+  add_wind_features_topic(context, topics);  // ~wind_features
+  add_wind_markers_topic(context, topics);   // ~wind_markers
+  add_points_topics(context, topics);        // ~points, ~water_points
+  add_plants_topics(context, topics);        // ~plants, ~plant_markers
+  add_grid_map_topic(context, topics);       // ~grid_map
+  add_local_map_topic(context, topics);      // ~local_map
+  add_costmap_topics(context, topics);       // ~costmap_updates, ~costmap
+  add_image_topic(context, topics);          // ~image
   return topics;
 }
 

@@ -51,6 +51,7 @@ std::shared_ptr<Snapshot> Views::make_empty_snapshot(const std::vector<Layer>& l
   s->step = state_.steps;
   s->time = state_.time();
   s->wind_above = state_.wind_above();
+  s->wind_features = state_.scenario.wind_features;
   s->micro_relief = {state_.scenario.get<MicroReliefParameters>(),
                      state_.scenario.seed,
                      state_.ripple_wind,

@@ -10,6 +10,7 @@
 #include "kernels/micro_relief/ripple_size.hpp"
 #include "kernels/plants/marking.hpp"
 #include "kernels/wind/wind.hpp"
+#include "kernels/wind/wind_features.hpp"
 #include "src/scenario/species.hpp"
 #include "src/simulation/views/staging.hpp"
 
@@ -45,6 +46,7 @@ struct Snapshot {
   std::uint64_t step = 0;
   double time = 0;  ///< simulated [s]
   wind::Vector wind_above;
+  std::vector<WindFeature> wind_features;  ///< of the scenario as it is now
   MicroReliefSettings micro_relief;
   std::vector<std::array<float, 3>> crown_colours;  ///< by species: of 1 in the layer plants, of 2 …
   std::map<Layer, std::vector<float>> layers;

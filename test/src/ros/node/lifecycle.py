@@ -107,6 +107,20 @@ class Lifecycle(Scenarios):
         self.assertEqual((grid.width, grid.height), (32, 48))
         self.assertAlmostEqual(node.latest("status", SimulationStatus).wind_above.x, 3)
 
+    def test_script_does_what_it_does_without_ros(self):
+        """Commands and parameters at a time, which ~status announces; a wrong one is named."""
+        script = self.path("script.yaml", "- {time: 2, command: edit_terrain, x: 60, y: 10, radius: 9, value: 1.5}\n"
+                                          "- {time: 4, every: 3, command: set_wind, speed: 7, direction_deg: 40}\n"
+                                          "- {time: 5, set: {saltation.lift: 0.4}}\n")
+        node = self.start("scripted", {"scenario": CORNER, "script": script})
+        self.assertIn("at 2 s: edit_terrain", node.latest("status", SimulationStatus).changes)
+        live = node.call("step", Step, 12).state_hash
+        self.assertEqual(self.run_without_ros(CORNER, "--script", script, "--steps", "12"), live)
+        self.assertNotEqual(self.run_without_ros(CORNER, "--steps", "12"), live)
+        wrong = self.path("wrong.yaml", "- {time: 2, command: edit_terrain, layer: lava}\n")
+        self.expect_refused(({"scenario": CORNER, "script": wrong}, "at 2 s", "edit_terrain", "'lava'"),
+                            ({"scenario": CORNER, "script": "missing.yaml"}, "missing.yaml"))
+
     # ---- clients -------------------------------------------------------------------------------
 
     def test_clients_wait_for_a_node_that_stands_still(self):

@@ -3,6 +3,7 @@
 #include <desert_sim/SetWind.h>
 #include <desert_sim/SetWindSchedule.h>
 #include <desert_sim/SimulationStatus.h>
+#include <desert_sim/WindFeatureList.h>
 #include <desert_sim/WindField.h>
 
 #include <cmath>
@@ -196,6 +197,38 @@ TEST_F(WindServices, EditWindAddsAJetAndTakesItAway) {
   removed.id = jet("add").id;
   EXPECT_TRUE(call<EditWind>("edit_wind", removed).success);
   EXPECT_NEAR(northward_in_the_middle(), before, 0.5);
+}
+
+/// Each with its id, so that another program can change or remove it.
+TEST_F(WindServices, WindFeaturesAreListedWithTheirIds) {
+  const Listener<WindFeatureList> list("wind_features");
+  const auto listed_after = [&](const EditWind::Request& request) {
+    const ros::Time before = ros::Time::now();
+    EXPECT_TRUE(call<EditWind>("edit_wind", request).success);
+    return since(before, list).features;
+  };
+  EXPECT_TRUE(list.last().features.empty());
+  const EditWind::Request added = jet("add");
+  EditWind::Request vortex;
+  vortex.operation = EditWind::Request::ADD;
+  vortex.id = 9;
+  vortex.kind = EditWind::Request::VORTEX;
+  vortex.center.x = 40, vortex.center.y = 12, vortex.radius = 7, vortex.speed = -2;
+  listed_after(added);
+  const auto both = listed_after(vortex);
+  ASSERT_EQ(both.size(), 2u);
+  EXPECT_EQ(both[0].id, 5);
+  EXPECT_EQ(both[0].kind, EditWind::Request::JET);
+  EXPECT_EQ(both[0].center.x, added.center.x);
+  EXPECT_EQ(both[0].direction_deg, 90);
+  EXPECT_EQ(both[0].length, 30);
+  EXPECT_EQ(both[1].id, 9);
+  EXPECT_EQ(both[1].kind, EditWind::Request::VORTEX);
+  EXPECT_EQ(both[1].speed, -2);
+  EXPECT_EQ(both[1].length, 0) << "a vortex has none, as ~edit_wind wants it";
+  EditWind::Request cleared;
+  cleared.operation = EditWind::Request::CLEAR;
+  EXPECT_TRUE(listed_after(cleared).empty());
 }
 
 TEST_F(WindServices, EditWindRefuses) {
