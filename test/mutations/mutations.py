@@ -21,6 +21,26 @@ MUTATIONS = [Mutation(*row) for row in (
      "p.longest_step = [](const SimulationState&) { return 100.0f; };",
      "the wind's shadow and avalanches follow in a long step", "core_analytic *TimeStep.*"),
 
+    # ---- what happens at a time, and painted layers
+    ("repetitions_at_their_time_forgotten", "src/scenario/timeline.cpp",
+     "while (time + n * every > now ||", "while (time + n * every >= now ||",
+     "a repetition happens at its time", "core_property *TimelineEntries*"),
+    ("timed_commands_before_settings", "src/simulation/editing/timeline.cpp",
+     "set_what_can_be_set(std::exchange(due, {}));", "",
+     "what comes first in a timeline happens first", "core_property *TimedCommands*"),
+    ("timeline_again_after_a_checkpoint", "src/simulation/checkpoint.cpp",
+     "s.timeline_time = header.timeline_time;", "s.timeline_time = -1;",
+     "a checkpoint knows what has happened", "core_property *TimedCommands*"),
+    ("unknown_keys_of_timed_commands_pass", "src/simulation/editing/timed_commands.cpp",
+     "yaml::reject_unknown_keys(given, path, known, errors);", "",
+     "a key that a command does not have is refused", "core_property *TimedCommandFaults*"),
+    ("painted_layers_stay_in_use", "src/simulation/undo/edit_history.cpp",
+     "state_.terrain.set_allocated(*layer, false);", "",
+     "a painted layer that is undone is as if it had never been", "core_property *UndoIn*:*Edits.OfPainted*"),
+    ("vegetation_painted_among_living_plants", "src/simulation/commands/edit_checks.cpp",
+     "scenario.get<VegetationParameters>().enabled)", "false)",
+     "living plants alone say what they cover", "core_property *Edits.OfVegetation*"),
+
     # ---- dice
     ("all_rolls_of_a_cell_alike", "kernels/field/dice.cpp",
      "Purpose::rounding, static_cast<std::uint32_t>(roll),", "Purpose::rounding, static_cast<std::uint32_t>(0 * roll),",

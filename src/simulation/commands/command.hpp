@@ -85,7 +85,7 @@ constexpr auto parameter_table(const EditParameters*) {
   return std::make_tuple(
       parameter(
           "layer", &P::layer,
-          "sand, soil, bedrock, water, moisture, obstacle, vegetation, erosion_resistance or looseness."),
+          "sand, bedrock, soil, water, moisture, obstacle, vegetation, erosion_resistance or looseness."),
       parameter("shape", &P::shape, brush_shapes, "Shape of the brush."),
       parameter("merge", &P::merge, brush_merges, "How the brush meets what is there."),
       parameter("x", &P::x, -1e7, 1e7, "m", "Centre, in the terrain's frame."),

@@ -25,8 +25,8 @@ struct EditedLayer {
 
 constexpr EditedLayer edited_layers[] = {
     {Layer::sand, EditKind::material, nullptr},
-    {Layer::soil, EditKind::material, "with a step that fills soil"},
     {Layer::bedrock, EditKind::material, nullptr},
+    {Layer::soil, EditKind::material, "with a step that fills soil"},
     {Layer::water, EditKind::material, "with rain, springs, a sea or a step that fills water"},
     {Layer::moisture, EditKind::material, "with moisture.enabled or a step that fills moisture"},
     {Layer::obstacle, EditKind::painted, nullptr},
