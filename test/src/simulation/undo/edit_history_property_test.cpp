@@ -74,7 +74,7 @@ TEST_P(UndoIn, TheOrderOfEditsBringsEveryStateBack) {
 TEST_P(UndoIn, AnyOrderBringsTheStartBackIfNothingWasMissing) {
   int exact = 0, inexact = 0;
   for (const char* world : test::undo_worlds)
-    for (unsigned seed = 0; seed < 12; ++seed) {
+    for (unsigned seed = 0; seed < 24; ++seed) {
       SCOPED_TRACE(std::string(world) + ", seed " + std::to_string(seed));
       auto s = session(world);
       test::RandomStrokes random(s->simulation(), seed);
