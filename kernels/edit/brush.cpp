@@ -68,25 +68,27 @@ struct CommitChange {
   }
 };
 
-struct ReadShares {
+struct ReadSteps {
   Grid grid;
-  const float* shares;
+  const float* values;
+  float steps_per_unit;
   Quanta* steps;
   DESERT_HD void operator()(int x, int y) const {
     const int i = grid.index(x, y);
-    steps[i] = static_cast<Quanta>(rintf(value_or_zero(shares, i) * static_cast<float>(share_steps)));
+    steps[i] = static_cast<Quanta>(rintf(value_or_zero(values, i) * steps_per_unit));
   }
 };
 
-struct CommitShares {
+struct CommitSteps {
   Brush b;
   const Quanta* change;
-  float* shares;
+  float unit_per_step;
+  float* values;
   DESERT_HD void operator()(int x, int y) const {
     const Quanta c = change[y * b.columns + x];
     if (c == 0) return;
     const int i = b.cell(x, y);
-    shares[i] = static_cast<float>(b.layer[i] + c) * static_cast<float>(1 / share_steps);
+    values[i] = static_cast<float>(b.layer[i] + c) * unit_per_step;
   }
 };
 
@@ -129,13 +131,13 @@ void commit_change(E& exec, const Brush& b, const Quanta* change, bool moved) {
 }
 
 template <class E>
-void read_shares(E& exec, const Grid& grid, const float* shares, Quanta* steps) {
-  for_each_cell(exec, grid, ReadShares{grid, shares, steps});
+void read_steps(E& exec, const Grid& grid, const float* values, float steps_per_unit, Quanta* steps) {
+  for_each_cell(exec, grid, ReadSteps{grid, values, steps_per_unit, steps});
 }
 
 template <class E>
-void commit_shares(E& exec, const Brush& b, const Quanta* change, float* shares) {
-  for_each_cell(exec, b.area(), CommitShares{b, change, shares});
+void commit_steps(E& exec, const Brush& b, const Quanta* change, float unit_per_step, float* values) {
+  for_each_cell(exec, b.area(), CommitSteps{b, change, unit_per_step, values});
 }
 
 template <class E>
@@ -149,8 +151,8 @@ template void merge(Backend&, const Brush&, Quanta*);
 template void ring_stock(Backend&, const Brush&, Quanta*);
 template long long cells_beyond_limit(Backend&, const Brush&, const Quanta*);
 template long long total(Backend&, const Brush&, const Quanta*);
-template void read_shares(Backend&, const Grid&, const float*, Quanta*);
-template void commit_shares(Backend&, const Brush&, const Quanta*, float*);
+template void read_steps(Backend&, const Grid&, const float*, float, Quanta*);
+template void commit_steps(Backend&, const Brush&, const Quanta*, float, float*);
 template void commit_change(Backend&, const Brush&, const Quanta*, bool);
 
 }  // namespace desert_sim::brush

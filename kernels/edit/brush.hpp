@@ -10,8 +10,8 @@
 /// An edit is computed as the change of each cell in the brush's rectangle, checked, and then applied. Depths
 /// do not fall below 0. The ledger records what is added or removed as inflow or outflow of the material.
 ///
-/// Obstacles and looseness are real numbers 0 … 1, shares. A brush edits them as integers that count 2⁻²⁰,
-/// which floats represent exactly; cells that it does not change keep their bits.
+/// Layers of real numbers are edited as integers that count steps (2⁻²⁰ of obstacles), which floats represent
+/// exactly; cells that an edit does not change keep their bits.
 
 #include "kernels/edit/brush_shape.hpp"
 #include "kernels/field/layers.hpp"
@@ -75,16 +75,14 @@ long long cells_beyond_limit(E& exec, const Brush& b, const Quanta* change);
 template <class E>
 long long total(E& exec, const Brush& b, const Quanta* change);
 
-constexpr double share_steps = 1 << 20;  ///< from 0 to 1
-
-/// A layer of shares as a brush edits it, of all cells of the grid; `shares` may be null, which is 0
+/// A layer of real numbers as a brush edits it, of all cells of the grid; `values` may be null, which is 0
 /// everywhere.
 template <class E>
-void read_shares(E& exec, const Grid& grid, const float* shares, Quanta* steps);
+void read_steps(E& exec, const Grid& grid, const float* values, float steps_per_unit, Quanta* steps);
 
-/// Applies the change to the shares; `b.layer` is what read_shares() gave.
+/// Applies the change to the values; `b.layer` is what read_steps() gave, and `unit_per_step` a power of two.
 template <class E>
-void commit_shares(E& exec, const Brush& b, const Quanta* change, float* shares);
+void commit_steps(E& exec, const Brush& b, const Quanta* change, float unit_per_step, float* values);
 
 /// Loosens the ground where the change adds sand; see looseness.hpp. `metres`: a quantum.
 template <class E>

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "src/simulation/commands/edited_layers.hpp"
+
 namespace desert_sim {
 
 namespace {
@@ -12,23 +14,33 @@ using Operation = Brush::Operation;
 struct MaterialRow {
   const char* label;  ///< in the tool's property
   const char* layer;  ///< of ~edit_terrain, which these rows are in the order of Brush::Material for
-  bool share;
-  bool flattens;  ///< ~query_terrain knows the layer where a stroke begins
+  bool flattens;      ///< ~query_terrain knows the layer where a stroke begins
   bool smooths;
 };
 constexpr MaterialRow materials[] = {
-    {"Sand", "sand", false, true, true},
-    {"Rock", "bedrock", false, true, true},
-    {"Soil", "soil", false, true, true},
-    {"Water", "water", false, true, true},
-    {"Moisture", "moisture", false, true, true},
-    {"Plants", "plants", false, false, false},
-    {"Vegetation", "vegetation", true, true, true},
-    {"Erosion Resistance", "erosion_resistance", true, false, true},
-    {"Looseness", "looseness", true, false, true},
-    {"Obstacle", "obstacle", true, false, false},
+    {"Sand", "sand", true, true},
+    {"Rock", "bedrock", true, true},
+    {"Soil", "soil", true, true},
+    {"Water", "water", true, true},
+    {"Moisture", "moisture", true, true},
+    {"Plants", "plants", false, false},
+    {"Vegetation", "vegetation", true, true},
+    {"Erosion Resistance", "erosion_resistance", false, true},
+    {"Grass", "grass", false, true},
+    {"Mesquite", "mesquite", false, true},
+    {"Shrub", "shrub", false, true},
+    {"Snow Density", "snow_density", false, true},
+    {"Looseness", "looseness", false, true},
+    {"Obstacle", "obstacle", false, false},
 };
 const MaterialRow& row(Material material) { return materials[static_cast<int>(material)]; }
+
+/// How much a pass can change a layer that has no depth or elevation [unit of the layer]; 0: it has one.
+double width_of_range(Material material) {
+  const EditedLayer* const edited = find_edited_layer(layer_of(material));  // plants are none
+  if (!edited || edited->kind == EditKind::material) return 0;
+  return info(edited->layer).highest - info(edited->layer).lowest;
+}
 
 template <class Request>
 void set_shape(Request& request, const render::Capsule& capsule, double radius) {
@@ -57,7 +69,7 @@ std::vector<const char*> brush_materials() {
 
 const char* layer_of(Material material) { return row(material).layer; }
 
-bool is_share(Material material) { return row(material).share; }
+bool is_material(Material material) { return width_of_range(material) == 0; }
 
 std::string problem_of(const Brush& brush) {
   const bool can = brush.operation == Operation::flatten  ? row(brush.material).flattens
@@ -91,8 +103,10 @@ EditTerrain::Request terrain_request(const Brush& brush, const render::Capsule& 
     case Operation::add:
     case Operation::remove:
       request.merge = adds ? "add" : "sub";
-      request.value = (is_share(brush.material) ? std::min(brush.strength, 1.0) : brush.strength) *
-                      share_of_depth(capsule, brush.radius, brush.inner);
+      request.value = brush.strength;
+      if (!is_material(brush.material))
+        request.value = std::min(request.value, width_of_range(brush.material));
+      request.value *= share_of_depth(capsule, brush.radius, brush.inner);
       break;
     case Operation::flatten:
       request.merge = "replace";

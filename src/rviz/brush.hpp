@@ -21,6 +21,10 @@ struct Brush {
     plants,
     vegetation,
     erosion_resistance,
+    grass,
+    mesquite,
+    shrub,
+    snow_density,
     looseness,
     obstacle
   };
@@ -28,12 +32,11 @@ struct Brush {
 
   Material material = Material::sand;
   Operation operation = Operation::add;
-  double radius = 5;  ///< [m]
-  double strength =
-      0.5;              ///< what a pass of the brush adds or removes on its axis [m]; of shares at most 1 [1]
-  double inner = 0.5;   ///< fraction of the radius with full weight, 0 … 1
-  std::string species;  ///< plants: what is planted; what is removed, empty for all
-  double density = 0.1;  ///< plants that a pass puts on each square metre [1/m²]
+  double radius = 5;      ///< [m]
+  double strength = 0.5;  ///< what a pass of the brush adds or removes on its axis [unit of the layer]
+  double inner = 0.5;     ///< fraction of the radius with full weight, 0 … 1
+  std::string species;    ///< plants: what is planted; what is removed, empty for all
+  double density = 0.1;   ///< plants that a pass puts on each square metre [1/m²]
   double size = 0.5;  ///< plants: their radius relative to the largest for which there is room, 0.001 … 1
 };
 
@@ -41,8 +44,8 @@ struct Brush {
 std::vector<const char*> brush_materials();
 /// The name of a material in ~edit_terrain; "plants" for plants.
 const char* layer_of(Brush::Material material);
-/// Whether it is a number 0 … 1, and no depth or elevation.
-bool is_share(Brush::Material material);
+/// Whether it is a depth or elevation, and no number of another unit.
+bool is_material(Brush::Material material);
 /// Why there is no such brush, such as one that smooths plants; empty if there is.
 std::string problem_of(const Brush& brush);
 

@@ -54,8 +54,8 @@ BrushTool::BrushTool() {
   radius_ = number("Radius", 5, 0.01f, 1e4f, "Radius of the brush [m]; the wheel changes it.", parent);
   strength_ =
       number("Strength", 0.5f, 1e-4f, 1e3f,
-             "What one pass of the brush adds or removes in its middle: a depth [m], or of vegetation, "
-             "erosion resistance and looseness a share of 1; Ctrl and the wheel change it.",
+             "What one pass of the brush adds or removes in its middle: a depth [m], or a number in the "
+             "unit of the layer, such as 0 ... 1 of vegetation; Ctrl and the wheel change it.",
              parent);
   inner_ = number("Inner Fraction", 0.5f, 0, 1,
                   "Full strength up to this fraction of the radius, from where it falls to 0.", parent);

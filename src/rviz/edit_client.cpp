@@ -215,7 +215,7 @@ void EditClient::paint(Stroke& stroke, const render::Capsule& capsule) {
     if (brush.material == Brush::Material::plants)
       report(true, number(static_cast<double>(stroke.plants)) + " plants");
     else
-      report(true, layer + (is_share(brush.material) ? "" : " " + number(stroke.volume) + " m³"));
+      report(true, layer + (!is_material(brush.material) ? "" : " " + number(stroke.volume) + " m³"));
   } catch (const ConfigError& error) {
     if (!stroke.failed) report(false, error.what());
     stroke.failed = true;

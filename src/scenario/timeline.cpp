@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "src/core/input_file.hpp"
 #include "src/core/quoted.hpp"

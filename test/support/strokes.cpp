@@ -19,6 +19,16 @@ std::string undo_world(const std::string& name) {
            "4},\n"
            "  obstacle: {x: 20, y: 15, size_x: 4, size_y: 4, height: 2}]\n"
            "wind: {speed: 6}\nrain: {rate: 1.0e-4}\n";
+  if (name == "meadow")
+    return "grid: {width: 40, height: 32}\n"
+           "terrain: [noise: {layer: bedrock, low: 0, high: 2, scale: 8}, noise: {layer: sand, low: 0, high: "
+           "3, seed: 2},\n"
+           "  noise: {layer: grass, low: 0, high: 1, scale: 8, seed: 3}, noise: {layer: mesquite, low: -1, "
+           "high: 1, seed: "
+           "4},\n"
+           "  noise: {layer: shrub, low: -0.5, high: 1, scale: 9, seed: 5}]\n"
+           "wind: {speed: 8}\nsand: {model: nield_baas}\nslab_model: {slab_height: 0.1}\n"
+           "slab_plants: {growth_time: 3}\n";
   return "grid: {width: 48, height: 40}\n"
          "terrain: [noise: {layer: bedrock, low: 0, high: 1, scale: 8}, uniform: {layer: soil, value: 2},\n"
          "  noise: {layer: sand, low: 0, high: 1}, uniform: {layer: moisture, value: 0.1}]\n"

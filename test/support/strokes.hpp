@@ -10,9 +10,9 @@
 namespace desert_sim::test {
 
 /// A world in which much moves, by name: "dunes" (sand on rock, periodic), "valley" (soil, water and
-/// obstacles, open), "garden" (plants that grow and spread).
+/// obstacles, open), "garden" (plants that grow and spread), "meadow" (slabs and their plants).
 std::string undo_world(const std::string& name);
-constexpr const char* undo_worlds[] = {"dunes", "valley", "garden"};
+constexpr const char* undo_worlds[] = {"dunes", "valley", "garden", "meadow"};
 
 /// Random edits of everything that the world has, in all shapes and merges; some are refused.
 class RandomStrokes {

@@ -85,7 +85,8 @@ constexpr auto parameter_table(const EditParameters*) {
   return std::make_tuple(
       parameter(
           "layer", &P::layer,
-          "sand, bedrock, soil, water, moisture, obstacle, vegetation, erosion_resistance or looseness."),
+          "sand, bedrock, soil, water, moisture, obstacle, vegetation, erosion_resistance, grass, mesquite, "
+          "shrub, snow_density or looseness."),
       parameter("shape", &P::shape, brush_shapes, "Shape of the brush."),
       parameter("merge", &P::merge, brush_merges, "How the brush meets what is there."),
       parameter("x", &P::x, -1e7, 1e7, "m", "Centre, in the terrain's frame."),
@@ -101,8 +102,10 @@ constexpr auto parameter_table(const EditParameters*) {
           "Share of the radius (of a rectangle, of half its sides) within which the brush has full weight."),
       parameter("falloff", &P::falloff, 0, 1e6, "m",
                 "Of a polygon or patch: how far inside its edge the brush has full weight."),
-      parameter("value", &P::value, -1e5, 1e5, "m",
-                "Height or depth of the brush; see merge. Of what is no material 0 … 1 [1]."),
+      parameter(
+          "value", &P::value, -1e5, 1e5, "m",
+          "Height or depth of the brush; see merge. Of what is no material a value of the layer, in its "
+          "unit."),
       parameter("patch_use", &P::patch_use, patch_uses,
                 "Whether a patch holds heights that are added to value, or weights."),
       parameter("smooth_radius", &P::smooth_radius, 1e-3, 1e6, "m",
@@ -132,7 +135,8 @@ struct Patch {
 /// [m], or with add and sub a change. With `conserve`, the material comes from, or goes to, the cells within
 /// `ring_width` of the shape: what is taken in proportion to what they have, of bedrock and what is given in
 /// equal parts. The sum of all changes is then 0, to the quantum. What is no material (vegetation is the
-/// density of plants that do not live) has values 0 … 1, cannot be conserved, and is kept in steps of 2⁻²⁰.
+/// density of plants that do not live) has values in the layer's range, cannot be conserved, and is kept in
+/// steps of 2⁻²⁰, of snow_density of 2⁻¹⁴.
 /// Edits of looseness are no strokes that undo knows, because the sand that moves changes it besides.
 struct EditTerrain : EditParameters {
   static constexpr const char* name = "edit_terrain";
@@ -262,7 +266,7 @@ struct CellRectangle {
 struct LayerChange {
   std::string layer;
   double x = 0, y = 0, cell_size = 0;  ///< lower left corner and cells of the rectangle [m]
-  std::vector<float> values;           ///< new − old [m, or 1 of shares], row-major
+  std::vector<float> values;           ///< new − old [unit of the layer], row-major
 };
 
 /// What an undo or redo did.

@@ -96,22 +96,24 @@ void check_patch(const EditTerrain& edit, ValidationErrors& errors) {
     }
 }
 
-/// Shares are 0 … 1, and so is what a brush says of them; what a patch adds or takes may be negative.
-void check_shares(const EditTerrain& edit, ValidationErrors& errors) {
+/// What is no material has a range, and so has what a brush says of it; what add and sub change it by is at
+/// most its width, and of a patch may be negative.
+void check_number(const EditTerrain& edit, const LayerInfo& layer, ValidationErrors& errors) {
   if (edit.conserve) errors.add("conserve", edit.layer + " is no material that a ring could give or take");
   if (edit.merge == BrushMerge::smooth) return;
   const bool heights = edit.shape == BrushShape::patch && edit.patch_use == PatchUse::heights;
-  const bool shift = heights && (edit.merge == BrushMerge::add || edit.merge == BrushMerge::sub);
+  const bool shift = edit.merge == BrushMerge::add || edit.merge == BrushMerge::sub;
+  const double width = layer.highest - layer.lowest;
+  const double least = !shift ? layer.lowest : (heights ? -width : 0), most = shift ? width : layer.highest;
   double lowest = edit.value, highest = edit.value;
   if (heights && !edit.patch.values.empty()) {
     const auto [low, high] = std::minmax_element(edit.patch.values.begin(), edit.patch.values.end());
     lowest += *low, highest += *high;
   }
-  const double least = shift ? -1 : 0;
-  if (lowest >= least && highest <= 1) return;
+  if (lowest >= least && highest <= most) return;
   std::ostringstream text;
-  text << (highest > 1 ? highest : lowest) << (heights ? " with the patch's values" : "")
-       << " is not a value of " << edit.layer << " (allowed: [" << least << ", 1])";
+  text << (highest > most ? highest : lowest) << (heights ? " with the patch's values" : "")
+       << " is not a value of " << edit.layer << " (allowed: [" << least << ", " << most << "])";
   errors.add("value", text.str());
 }
 
@@ -152,8 +154,9 @@ void check_edit(const EditTerrain& edit) {
   check_points(edit.shape, edit.points, errors);
   check_patch(edit, errors);
   errors.throw_if_any();
-  if (find_edited_layer(edit.layer)->kind != EditKind::material)
-    check_shares(edit, errors);
+  const EditedLayer& row = *find_edited_layer(edit.layer);
+  if (row.kind != EditKind::material)
+    check_number(edit, info(row.layer), errors);
   else
     check_depth(edit, errors);
   errors.throw_if_any();

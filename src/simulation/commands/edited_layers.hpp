@@ -12,8 +12,9 @@ namespace desert_sim {
 enum class EditKind {
   material,  ///< a depth or, of bedrock, an elevation [m], in whole quanta; the ledger books what an edit
              ///< brings or takes
-  painted,   ///< 0 … 1, which no process changes: a cell is what the newest stroke says
-  fleeting   ///< 0 … 1, which processes change besides; its edits cannot be undone
+  painted,   ///< a number in the layer's range: a cell is what the newest stroke says, unless a process has
+             ///< changed it since; an undo brings back what was there before the stroke
+  fleeting   ///< likewise, but its edits cannot be undone
 };
 
 struct EditedLayer {
@@ -32,6 +33,10 @@ constexpr EditedLayer edited_layers[] = {
     {Layer::obstacle, EditKind::painted, nullptr},
     {Layer::vegetation, EditKind::painted, nullptr},
     {Layer::erosion_resistance, EditKind::painted, nullptr},
+    {Layer::grass, EditKind::painted, "with sand.model nield_baas"},
+    {Layer::mesquite, EditKind::painted, "with sand.model nield_baas"},
+    {Layer::shrub, EditKind::painted, "with sand.model nield_baas"},
+    {Layer::snow_density, EditKind::painted, "with sand.model snow"},
     {Layer::looseness, EditKind::fleeting, "with looseness.enabled or a step that fills looseness"},
 };
 
@@ -43,5 +48,9 @@ inline const EditedLayer* find_edited_layer(const std::string& name) {
   return found == std::end(edited_layers) ? nullptr : found;
 }
 inline EditKind edit_kind(Layer layer) { return find_edited_layer(info(layer).name)->kind; }
+
+/// Steps in which a brush edits a layer that is no material: powers of two, of which floats represent every
+/// multiple in the layer's range.
+constexpr double steps_per_unit(Layer layer) { return layer == Layer::snow_density ? 1 << 14 : 1 << 20; }
 
 }  // namespace desert_sim

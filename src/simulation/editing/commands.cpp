@@ -6,6 +6,8 @@
 #include "src/scenario/live_parameters.hpp"
 #include "src/scenario/range_checks.hpp"
 #include "src/scenario/terrain_builder.hpp"
+#include "src/simulation/commands/edit_checks.hpp"
+#include "src/simulation/commands/edited_layers.hpp"
 #include "src/simulation/editing/plant_edit.hpp"
 #include "src/simulation/editing/terrain_edit.hpp"
 #include "src/simulation/memory/memory.hpp"

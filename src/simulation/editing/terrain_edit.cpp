@@ -66,16 +66,17 @@ TerrainEdit::TerrainEdit(const command::EditTerrain& command, Terrain& terrain, 
 void TerrainEdit::choose_layer() {
   brush_.merge = command_.merge;
   brush_.quanta_per_metre = 1.0 / step_size();
-  if (of_shares()) {
-    shares_ = Buffer<Quanta>(terrain_.exec(), static_cast<std::size_t>(brush_.grid.cells()));
+  if (!of_material()) {
+    steps_ = Buffer<Quanta>(terrain_.exec(), static_cast<std::size_t>(brush_.grid.cells()));
     with_backend(terrain_.exec(), [&](auto& e) {
-      brush::read_shares(e, brush_.grid, terrain_.view().real(layer_), shares_.data());
+      brush::read_steps(e, brush_.grid, terrain_.view().real(layer_),
+                        static_cast<float>(brush_.quanta_per_metre), steps_.data());
     });
-    brush_.layer = shares_.data();
+    brush_.layer = steps_.data();
     brush_.depth = true;
-    brush_.lowest = 0;
-    brush_.highest = static_cast<Quanta>(brush::share_steps);
-    brush_.value = command_.value * brush::share_steps;
+    brush_.lowest = static_cast<Quanta>(info(layer_).lowest * brush_.quanta_per_metre);
+    brush_.highest = static_cast<Quanta>(info(layer_).highest * brush_.quanta_per_metre);
+    brush_.value = command_.value * brush_.quanta_per_metre;
     return;
   }
   const TerrainView view = terrain_.view();
@@ -93,9 +94,9 @@ void TerrainEdit::choose_layer() {
   brush_.value = (command_.value - above) * brush_.quanta_per_metre;
 }
 
-/// What an integer of the brush counts [m, or 1 of shares].
+/// What an integer of the brush counts [unit of the layer].
 double TerrainEdit::step_size() const {
-  return of_shares() ? 1 / brush::share_steps : terrain_.scale().quantum();
+  return of_material() ? terrain_.scale().quantum() : 1 / steps_per_unit(layer_);
 }
 
 /// The shape in cells, and the rectangle of cells that bounds it.
@@ -232,7 +233,7 @@ void TerrainEdit::conserve() {
 }
 
 void TerrainEdit::require_heights() const {
-  if (of_shares()) return;
+  if (!of_material()) return;
   const long long beyond = with_backend(
       terrain_.exec(), [&](auto& e) { return brush::cells_beyond_limit(e, brush_, change_.data()); });
   if (beyond == 0) return;
@@ -245,10 +246,11 @@ void TerrainEdit::require_heights() const {
 
 CommandResult TerrainEdit::commit(bool with_change) {
   CommandResult result;
-  if (of_shares()) {
+  if (!of_material()) {
     if (edit_kind(layer_) == EditKind::painted && !change().painted.empty()) terrain_.allocate(layer_);
     with_backend(terrain_.exec(), [&](auto& e) {
-      brush::commit_shares(e, brush_, change_.data(), terrain_.view().real(layer_));
+      brush::commit_steps(e, brush_, change_.data(), static_cast<float>(step_size()),
+                          terrain_.view().real(layer_));
     });
   } else {
     with_backend(terrain_.exec(),
@@ -282,17 +284,17 @@ LayerEdit TerrainEdit::change() const {
       if (change[k] != 0) edit.cells.push_back({brush_.cell(x, y), change[k]});
   std::sort(edit.cells.begin(), edit.cells.end(),
             [](const CellAmount& a, const CellAmount& b) { return a.cell < b.cell; });
-  if (!of_shares() || edit.cells.empty()) return edit;
+  if (of_material() || edit.cells.empty()) return edit;
   std::vector<int> cells;
   for (const CellAmount& c : edit.cells) cells.push_back(c.cell);
   const CellList list(terrain_.exec(), cells);
   std::vector<std::uint32_t> before(cells.size(), 0);
   if (terrain_.has(layer_)) before = list.read(terrain_.data(layer_));
-  const std::vector<std::uint32_t> steps = list.read(reinterpret_cast<const std::uint32_t*>(shares_.data()));
+  const std::vector<std::uint32_t> steps = list.read(reinterpret_cast<const std::uint32_t*>(steps_.data()));
   for (std::size_t n = 0; n < cells.size(); ++n)
     edit.painted.push_back({cells[n], float_from_bits(before[n]),
                             static_cast<float>(static_cast<Quanta>(steps[n]) + edit.cells[n].amount) *
-                                static_cast<float>(1 / brush::share_steps),
+                                static_cast<float>(step_size()),
                             0});
   edit.cells.clear();
   return edit;

@@ -6,6 +6,7 @@
 #include "kernels/edit/brush_smooth.hpp"
 #include "src/scenario/scenario.hpp"
 #include "src/simulation/commands/command.hpp"
+#include "src/simulation/commands/edited_layers.hpp"
 #include "src/simulation/undo/stroke.hpp"
 #include "src/terrain/terrain.hpp"
 
@@ -36,8 +37,7 @@ class TerrainEdit {
   void smooth();
   void conserve();
   void require_heights() const;
-  /// Of numbers 0 … 1, which are no material.
-  bool of_shares() const { return edit_kind(layer_) != EditKind::material; }
+  bool of_material() const { return edit_kind(layer_) == EditKind::material; }
   double step_size() const;
   std::vector<float> change_of_rectangle() const;
 
@@ -46,7 +46,7 @@ class TerrainEdit {
   const GridParameters& grid_;
   Layer layer_;
   brush::Brush brush_{};
-  Buffer<Quanta> shares_;  ///< a layer of shares as the brush edits it; empty for materials
+  Buffer<Quanta> steps_;  ///< a layer of real numbers as the brush edits it; empty for materials
   Buffer<brush::Point> vertices_;
   Buffer<float> patch_;
   Buffer<Quanta> change_;

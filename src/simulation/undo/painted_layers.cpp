@@ -66,7 +66,10 @@ std::vector<float> turn(std::deque<Stroke>& strokes, const Stroke& stroke, Paint
   for (std::size_t n = 0; n < cells.size(); ++n) {
     PaintedCell& own = cells[n];
     const float present = float_from_bits(words[n]);
-    if (stroke.undone) own.before = above[n] ? above[n]->before : present;
+    if (stroke.undone)
+      own.before = above[n] ? above[n]->before : present;
+    else if (!above[n])
+      own.after = present;
     const float value = stroke.undone ? own.after : own.before;
     if (above[n]) {
       above[n]->before = value;
