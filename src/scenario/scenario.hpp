@@ -136,8 +136,8 @@ Scenario parse_scenario_text(const std::string& yaml, const std::string& name, c
 Scenario parse_scenario(const YAML::Node& root, const std::string& name, const std::string& folder);
 /// What the scenario file of a saved terrain begins with.
 constexpr const char* saved_terrain_comment = "# A terrain saved at step ";
-/// The scenario as YAML with all parameters, defaults included; parse_scenario() reads back the same
-/// scenario.
+/// The scenario as YAML with all parameters, defaults included. Of a scenario whose grid is resolved,
+/// parse_scenario() reads back the same one.
 std::string dump_scenario(const Scenario& scenario);
 
 /// All parameters as a markdown page, which `desert_run --describe` prints and config/parameters.md contains.

@@ -1,7 +1,7 @@
 #pragma once
-/// Layers as strokes paint them (EditKind::painted): a cell is what the newest stroke says that has painted it
-/// and is not undone, so that the order of undos does not matter. What a process has changed since goes with
-/// the stroke, and comes back with a redo.
+/// Layers as strokes paint them (EditKind::painted): a cell is what the newest stroke says that has painted
+/// it and is not undone, so that the order of undos does not matter. What a process has changed since goes
+/// with the stroke, and comes back with a redo.
 
 #include <deque>
 

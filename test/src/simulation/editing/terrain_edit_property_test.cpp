@@ -319,6 +319,33 @@ TEST_P(Edits, OfPaintedLayersAreWhatAScenarioWithTheLayerHas) {
   }
 }
 
+/// Layers that are no material have ranges of their own.
+TEST_P(Edits, OfNumbersKeepToTheRangeOfTheirLayer) {
+  const std::string ground = "grid: {width: 24, height: 20}\nterrain: [uniform: {layer: sand, value: 2}]\n";
+  const auto meadow = simulation(ground + "sand: {model: nield_baas}\n"),
+             snow = simulation(ground + "sand: {model: snow}\n");
+  EditTerrain edit;
+  edit.shape = BrushShape::rectangle;
+  edit.x = 12, edit.y = 10, edit.radius = 12, edit.radius_y = 10, edit.inner = 1;
+  const auto painted = [&](Simulation& s, const char* layer, BrushMerge merge, double value) {
+    edit.layer = layer, edit.merge = merge, edit.value = value;
+    s.apply(edit);
+    return s.terrain().values(layer_by_name(layer)).at(200);
+  };
+  EXPECT_EQ(painted(*meadow, "mesquite", BrushMerge::replace, -0.5), -0.5f);
+  EXPECT_EQ(painted(*meadow, "mesquite", BrushMerge::add, 4), 3) << "it has no more than 3";
+  EXPECT_EQ(painted(*meadow, "shrub", BrushMerge::sub, 2), -0.5f);
+  EXPECT_EQ(painted(*snow, "snow_density", BrushMerge::replace, 400.25), 400.25f);
+  EXPECT_EQ(painted(*snow, "snow_density", BrushMerge::replace, 917), 917);
+  edit.layer = "mesquite", edit.value = 3.5;
+  EXPECT_NE(test::refusal(*meadow, edit).find("3.5 is not a value of mesquite (allowed: [-1, 3])"),
+            std::string::npos);
+  edit.merge = BrushMerge::add, edit.value = 5;
+  EXPECT_NE(test::refusal(*meadow, edit).find("(allowed: [0, 4])"), std::string::npos);
+  edit.layer = "snow_density", edit.value = 1;
+  EXPECT_NE(test::refusal(*meadow, edit).find("with sand.model snow"), std::string::npos);
+}
+
 TEST_P(Edits, OfVegetationAreRefusedWherePlantsLive) {
   const auto s =
       simulation(test::edit_world("open") + "vegetation: {enabled: true}\nspecies: [{preset: bush}]\n");
