@@ -188,7 +188,9 @@ TEST(TimelineEntries, HappenAtEachRepetitionOnce) {
     entry.time = trial % 3 ? number(20) : std::round(number(20));
     if (trial % 5) entry.every = trial % 2 ? 0.1 * (1 + std::round(number(40))) : number(5) + 1e-3;
     if (trial % 7 > 3) entry.until = entry.time + number(60);
-    const double after = number(100) - 1, now = after + number(trial % 4 ? 3 : 40);
+    const auto repetition = [&] { return entry.time + std::round(number(30)) * entry.every; };
+    const double after = trial % 6 == 1 ? repetition() : number(100) - 1,
+                 now = trial % 6 == 2 ? std::max(repetition(), after) : after + number(trial % 4 ? 3 : 40);
     std::optional<double> next, last;
     for (int n = 0; n < 200000; ++n) {
       const double time = entry.time + n * entry.every;
