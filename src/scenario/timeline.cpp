@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <set>
 
 #include "src/core/input_file.hpp"
 #include "src/core/quoted.hpp"
@@ -45,11 +46,14 @@ void read_repetition(const YAML::Node& node, const std::string& key, ValidationE
 }
 
 /// All keys of the entry but those that say when are the command's.
-std::string command_text(const YAML::Node& entry) {
+std::string command_text(const YAML::Node& entry, const std::string& path, ValidationErrors& errors) {
   YAML::Node command(YAML::NodeType::Map);
-  for (const auto& part : entry)
-    if (const std::string key = part.first.Scalar(); key != "time" && key != "every" && key != "until")
-      command[key] = part.second;
+  std::set<std::string> seen;
+  for (const auto& part : entry) {
+    const std::string key = part.first.Scalar();
+    if (!seen.insert(key).second) errors.add(path + key, "is given twice");
+    if (key != "time" && key != "every" && key != "until") command[key] = part.second;
+  }
   return flow_text(command);
 }
 
@@ -64,7 +68,7 @@ TimelineEntry read_entry(const YAML::Node& node, const std::string& key, Validat
   entry.time = read_time(node["time"], key + ".time", errors);
   read_repetition(node, key, errors, entry);
   if (is_command) {
-    entry.command = command_text(node);
+    entry.command = command_text(node, key + ".", errors);
     return entry;
   }
   entry.ramp = read_time(node["ramp"], key + ".ramp", errors);
@@ -226,9 +230,6 @@ void check_timeline(const Scenario& scenario, const std::vector<TimelineEntry>& 
   for (std::size_t n = 0; n < timeline.size(); ++n) {
     const TimelineEntry& entry = timeline[n];
     const std::string key = list + "." + std::to_string(n);
-    if (entry.every > 0 && static_cast<float>(entry.every) < scenario.run.time_step)
-      errors.add(key + ".every", std::to_string(entry.every) + " s is less than run.time_step, " +
-                                     std::to_string(scenario.run.time_step) + " s");
     try {
       if (!entry.settings.empty()) then = with_live_settings(then, entry.settings);
     } catch (const ConfigError& e) {

@@ -6,6 +6,7 @@
 
 #include "kernels/sand/saltation.hpp"
 #include "kernels/water/water_parameters.hpp"
+#include "src/core/number_text.hpp"
 #include "src/scenario/yaml_parameters.hpp"
 #include "src/simulation/pipeline/pipeline.hpp"
 #include "src/simulation/processes/processes.hpp"
@@ -42,6 +43,13 @@ std::vector<std::string> settings_without_effect(const Scenario& scenario) {
     lines.emplace_back("wind.segments: have no effect, because wind.regime is constant");
   if (scenario.get<SaltationParameters>().influx > 0 && scenario.grid.boundary == Boundary::periodic)
     lines.emplace_back("saltation.influx: has no effect, because grid.boundary is periodic");
+  for (std::size_t n = 0; n < scenario.timeline.size(); ++n)
+    if (const double every = scenario.timeline[n].every;
+        every > 0 && static_cast<float>(every) < scenario.run.time_step)
+      lines.push_back("run.timeline." + std::to_string(n) + ".every: " + number_text(every, 9) +
+                      " s is shorter than a step of " +
+                      number_text(static_cast<double>(scenario.run.time_step), 6) +
+                      " s, so that it happens once a step");
   if (scenario.get<WaterParameters>().sea != Sea::none && !has_water(scenario))
     lines.emplace_back("water.sea: has no effect, because the scenario has no water (water.enabled)");
   return lines;

@@ -45,5 +45,14 @@ TEST(SettingsWithoutEffect, SoAreWindsEdgesAndSeas) {
   EXPECT_EQ(told("barchan", {"water.sea=border", "water.enabled=true"}), "");
 }
 
+TEST(SettingsWithoutEffect, SoAreRepetitionsWithinAStep) {
+  const auto every = [](const std::string& time) {
+    return told("barchan", {"run.timeline=[{time: 1, every: " + time + ", set: {wind.speed: 5}}]"});
+  };
+  EXPECT_NE(every("0.5").find("run.timeline.0.every: 0.5 s is shorter than a step of 1 s"),
+            std::string::npos);
+  EXPECT_EQ(every("1"), "");
+}
+
 }  // namespace
 }  // namespace desert_sim
