@@ -113,10 +113,11 @@ class Simulation:
     def edit(self, layer, shape, merge, value=0.0, frame="", **fields):
         """A brush on the ground; srv/EditTerrain.srv has all its fields.
 
-        layer    sand, bedrock, soil, water, moisture, obstacle, vegetation, erosion_resistance, looseness
+        layer    sand, bedrock, soil, water, moisture, obstacle, vegetation, erosion_resistance, grass, mesquite, shrub,
+                 snow_density, looseness
         shape    circle, ellipse, rectangle, capsule, polygon, patch
         merge    add, sub, replace, min, max, avg, smooth
-        value    [m], or 0 ... 1 for what is no material
+        value    [m], or a value of the layer that is no material, 0 ... 1 of most
         fields   center=(x, y) [m], radius, radius_y [m], angle_deg, points=[(x, y), ...] [m], inner (fraction of the shape
                  with full weight, 0 ... 1), falloff [m], conserve, ring_width [m], stroke, image, ...
         Answers with the volume added [m^3] and the cells that may have changed (x, y, width, height).

@@ -39,6 +39,8 @@ double read_time(const YAML::Node& node, const std::string& key, ValidationError
 void read_repetition(const YAML::Node& node, const std::string& key, ValidationErrors& errors,
                      TimelineEntry& entry) {
   entry.every = read_time(node["every"], key + ".every", errors);
+  if (entry.every > 0 && entry.every < entry.most_frequent)
+    errors.add(key + ".every", yaml::node_text(node["every"]) + " is too often (allowed: [0.0001, 1e+12] s)");
   if (!node["until"]) return;
   entry.until = read_time(node["until"], key + ".until", errors);
   if (!(entry.every > 0)) errors.add(key + ".until", "is given without 'every'");
@@ -113,10 +115,11 @@ const char* find_number(const Scenario& scenario, const std::string& path, doubl
 std::optional<double> TimelineEntry::next_after(double after) const {
   if (time > after) return time;
   if (!(every > 0)) return std::nullopt;
-  // The quotient is rounded, so that the repetition it names may be one too early or too late.
-  double n = std::max(0.0, std::floor((after - time) / every) - 1);
-  while (time + n * every <= after) ++n;
-  const double next = time + n * every;
+  // The quotient is rounded, so that the repetition it names may be one too early or too late. Where
+  // repetitions lie closer than numbers do, the next number is one.
+  double n = std::max(0.0, std::floor((after - time) / every) - 1), next = time + n * every;
+  for (int tries = 0; next <= after && tries < 4; ++tries) next = time + ++n * every;
+  if (next <= after) next = std::nextafter(after, no_end);
   return next <= until ? std::optional(next) : std::nullopt;
 }
 
@@ -124,9 +127,10 @@ std::optional<double> TimelineEntry::last_between(double after, double now) cons
   const std::optional<double> next = next_after(after);
   if (!next || *next > now) return std::nullopt;
   if (!(every > 0)) return next;
-  double n = std::floor((std::min(now, until) - time) / every) + 1;
-  while (time + n * every > now || time + n * every > until) --n;
-  return time + n * every;
+  const double end = std::min(now, until);
+  double n = std::floor((end - time) / every) + 1, last = time + n * every;
+  for (int tries = 0; last > end && tries < 4; ++tries) last = time + --n * every;
+  return last > after && last <= end ? last : *next;
 }
 
 int Ramp::step_index_at(double time) const {

@@ -10,7 +10,7 @@
 ///
 /// Any parameter that can change while a simulation runs can be set. A floating-point parameter changes
 /// linearly over `ramp` seconds from its value at `time` to the new one, in Ramp::step_count equal steps; all
-/// others change at `time`. The commands, and their keys, are those of timed_command.hpp. All happens before
+/// others change at `time`. The commands, and their keys, are those of timed_commands.hpp. All happens before
 /// the first step that begins at the time or later, in order of time; what is due several times before one
 /// step happens once.
 
@@ -32,12 +32,12 @@ struct Scenario;
 class ValidationErrors;
 
 struct TimelineEntry {
-  static constexpr double no_end = 1e12;
-  double time = 0, ramp = 0;            ///< [s]
-  double every = 0;                     ///< [s]; 0: once
-  double until = no_end;                ///< [s]; no repetition comes later
-  std::vector<std::string> settings{};  ///< "path=value"
-  std::string command{};                ///< in their place: a command as YAML in flow style
+  static constexpr double no_end = 1e12, most_frequent = 1e-4;  ///< [s]
+  double time = 0, ramp = 0;                                    ///< [s]
+  double every = 0;                                             ///< [s]; 0: once
+  double until = no_end;                                        ///< [s]; no repetition comes later
+  std::vector<std::string> settings{};                          ///< "path=value"
+  std::string command{};  ///< in their place: a command as YAML in flow style
 
   /// The first time after `time` [s] at which it happens; none if it does not happen again.
   std::optional<double> next_after(double time) const;

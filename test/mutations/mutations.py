@@ -23,7 +23,7 @@ MUTATIONS = [Mutation(*row) for row in (
 
     # ---- what happens at a time, and painted layers
     ("repetitions_at_their_time_forgotten", "src/scenario/timeline.cpp",
-     "while (time + n * every > now ||", "while (time + n * every >= now ||",
+     "last > end && tries < 4", "last >= end && tries < 4",
      "a repetition happens at its time", "core_property *TimelineEntries*"),
     ("timed_commands_before_settings", "src/simulation/editing/timeline.cpp",
      "set_what_can_be_set(std::exchange(due, {}));", "",

@@ -218,6 +218,21 @@ TEST(TimelineEntries, HappenAtEachRepetitionOnce) {
   }
 }
 
+/// Where numbers lie farther apart than repetitions, each search ends.
+TEST(TimelineEntries, MayLieCloserThanNumbers) {
+  TimelineEntry entry;
+  entry.every = entry.most_frequent;
+  for (const double after : {1e9, 9.0e11, 9.99e11}) {
+    const double number = std::nextafter(after, 1e30), step = std::max(2 * entry.every, number - after);
+    ASSERT_TRUE(entry.next_after(after).has_value());
+    EXPECT_GT(*entry.next_after(after), after);
+    EXPECT_LE(*entry.next_after(after), after + step);
+    ASSERT_TRUE(entry.last_between(after, after + 10).has_value());
+    EXPECT_GT(*entry.last_between(after, after + 10), after);
+    EXPECT_LE(*entry.last_between(after, after + 10), after + 10);
+  }
+}
+
 TEST(TimedCommandFaults, AreRefusedAtTheStart) {
   const auto exec = make_exec("cpu", 1);
   const auto fault_of = [&](const std::string& entry) -> std::string {
@@ -258,6 +273,8 @@ TEST(TimedCommandFaults, AreRefusedAtTheStart) {
            {"{time: 1, every: -1, command: edit_terrain}", "run.timeline.0.every: -1 is not a time"},
            {"{time: 1, command: edit_terrain, radius: 3, radius: 5}",
             "run.timeline.0.radius: is given twice"},
+           {"{time: 1, every: 1.0e-300, command: edit_terrain}",
+            "run.timeline.0.every: 1.0e-300 is too often"},
            {"{time: 1, until: 5, command: edit_terrain}", "run.timeline.0.until: is given without 'every'"},
            {"{time: 9, every: 2, until: 5, command: edit_terrain}", "run.timeline.0.until: is earlier"}})
     EXPECT_NE(fault_of(entry).find(part), std::string::npos) << entry << ":\n" << fault_of(entry);
