@@ -38,6 +38,11 @@ struct Workspace {
 Workspace make_workspace(Exec& exec, const Grid& grid, int capacity,
                          const std::vector<SpeciesTraits>& species, const std::vector<float>& competition);
 
+/// Lets the plants live by other traits from now on. Species keep their numbers; there may be more of them
+/// than before.
+void set_species(Exec& exec, Workspace& work, const std::vector<SpeciesTraits>& species,
+                 const std::vector<float>& competition);
+
 /// The columns of all plants, for checkpoints and the state hash: all of Column::x, all of Column::y and so
 /// on.
 std::vector<std::uint32_t> words(const Workspace& work);

@@ -1,3 +1,5 @@
+#include <utility>
+
 #include "kernels/plants/workspace.hpp"
 
 namespace desert_sim::plants {
@@ -7,29 +9,40 @@ Workspace make_workspace(Exec& exec, const Grid& grid, int capacity,
   const auto cells = static_cast<std::size_t>(grid.cells()), room = static_cast<std::size_t>(capacity);
   Workspace work;
   work.capacity = capacity;
-  work.species_count = static_cast<int>(species.size());
   work.lookup = Lookup(grid);
   for (Buffer<std::uint32_t>* columns : {&work.now, &work.next})
     *columns = Buffer<std::uint32_t>(exec, column_count * room);
   work.spans = Buffer<Span>(exec, static_cast<std::size_t>(work.lookup.cells + Lookup::levels));
   work.spans.set_zero();
   work.sort_workspace = SortWorkspace(exec, capacity, grid.cells() + 1);
-  work.species = Buffer<SpeciesTraits>(exec, species.size());
-  work.species.upload(species);
-  work.competition = Buffer<float>(exec, competition.size());
-  work.competition.upload(competition);
   work.granted_water = Buffer<Quanta>(exec, room);
   work.water_requests = Buffer<long long>(exec, cells);
-  for (Buffer<float>* map : {&work.density, &work.downwind}) {
-    *map = Buffer<float>(exec, cells * species.size());
-    map->set_zero();
-  }
   work.seeds = Buffer<int>(exec, cells + 1);
   work.seeds.set_zero();
   work.seed_offsets = Buffer<int>(exec, cells + 1);
   work.event_counts = Buffer<int>(exec, 2);
   work.tops = surface::make_heights(exec, grid);
+  set_species(exec, work, species, competition);
   return work;
+}
+
+void set_species(Exec& exec, Workspace& work, const std::vector<SpeciesTraits>& species,
+                 const std::vector<float>& competition) {
+  Buffer<SpeciesTraits> traits(exec, species.size());
+  traits.upload(species);
+  Buffer<float> matrix(exec, competition.size());
+  matrix.upload(competition);
+  if (work.species_count != static_cast<int>(species.size())) {
+    const std::size_t cells = work.water_requests.size();
+    Buffer<float> density(exec, cells * species.size()), downwind(exec, cells * species.size());
+    density.set_zero();
+    downwind.set_zero();
+    work.density = std::move(density);
+    work.downwind = std::move(downwind);
+  }
+  work.species = std::move(traits);
+  work.competition = std::move(matrix);
+  work.species_count = static_cast<int>(species.size());
 }
 
 std::size_t Workspace::bytes() const {

@@ -13,10 +13,10 @@ from .layer_map import LayerMap
 from .live_parameters import config_of, parameters_of
 from .msg import SimulationStatus, WaterSpring, WindScheduleSegment
 from .services import SimulationError, call
-from .srv import (EditPlants, EditPlantsRequest, EditTerrain, EditTerrainRequest, EditWind, EditWindRequest, GetSubmap,
-                  GetSubmapRequest, LoadCheckpoint, LoadScenario, LoadTerrain, QueryTerrain, QueryTerrainRequest,
-                  SaveCheckpoint, SaveTerrain, SetWeather, SetWeatherRequest, SetWind, SetWindRequest, SetWindSchedule,
-                  Step, Undo)
+from .srv import (ApplySettings, EditPlants, EditPlantsRequest, EditTerrain, EditTerrainRequest, EditWind,
+                  EditWindRequest, GetScenario, GetSubmap, GetSubmapRequest, LoadCheckpoint, LoadScenario, LoadTerrain,
+                  NewScenario, QueryTerrain, QueryTerrainRequest, SaveCheckpoint, SaveScenario, SaveTerrain,
+                  SetWeather, SetWeatherRequest, SetWind, SetWindRequest, SetWindSchedule, Step, Undo)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -113,13 +113,13 @@ class Simulation:
     def edit(self, layer, shape, merge, value=0.0, frame="", **fields):
         """A brush on the ground; srv/EditTerrain.srv has all its fields.
 
-        layer    sand, bedrock, soil, water, moisture, obstacle, vegetation, erosion_resistance, grass, mesquite, shrub,
-                 snow_density, looseness
+        layer    sand, bedrock, soil, water, moisture, airborne_sand, obstacle, vegetation, erosion_resistance, humus, grass,
+                 mesquite, shrub, snow_density, looseness
         shape    circle, ellipse, rectangle, capsule, polygon, patch
         merge    add, sub, replace, min, max, avg, smooth
         value    [m], or a value of the layer that is no material, 0 ... 1 of most
         fields   center=(x, y) [m], radius, radius_y [m], angle_deg, points=[(x, y), ...] [m], inner (fraction of the shape
-                 with full weight, 0 ... 1), falloff [m], conserve, ring_width [m], stroke, image, ...
+                 with full weight, 0 ... 1), falloff [m], conserve, ring_width [m], stroke, image, image_file, ...
         Answers with the volume added [m^3] and the cells that may have changed (x, y, width, height).
         """
         request = EditTerrainRequest(layer=layer, shape=shape, merge=merge, value=value)
@@ -223,6 +223,14 @@ class Simulation:
                                         values)
         return maps
 
+    def apply_settings(self, settings, ramp=0.0):
+        """Parameters and lists that can change while it runs: ("saltation.lift=0.4", "species.0.max_radius=2")."""
+        return self.call("apply_settings", ApplySettings, list(settings), ramp)
+
+    def get_scenario(self, start=False):
+        """The scenario as it is now, or at its start, with all parameters: .name and .yaml."""
+        return self.call("get_scenario", GetScenario, start)
+
     # ---- files: names are paths below the node's ~data_dir
 
     def save_checkpoint(self, name):
@@ -241,9 +249,20 @@ class Simulation:
         """The terrain of such a folder, or of a bag with a GridMap, under the present physics."""
         return self.call("load_terrain", LoadTerrain, name, fill_nodata)
 
-    def load_scenario(self, name):
-        """Another scenario: one of config/scenarios by its name, such as "barchan", or a YAML file."""
-        return self.call("load_scenario", LoadScenario, name)
+    def load_scenario(self, name, settings=()):
+        """Another scenario: one of config/scenarios by its name, such as "barchan", a YAML file, or a saved folder.
+
+        settings  override its keys: ("grid.width=512", "seed=7")
+        """
+        return self.call("load_scenario", LoadScenario, name, list(settings))
+
+    def new_scenario(self, yaml, settings=(), name=""):
+        """A scenario by its text; files that it names are below ~data_dir."""
+        return self.call("new_scenario", NewScenario, yaml, list(settings), name)
+
+    def save_scenario(self, name):
+        """The scenario as it is, with all of its state, as a folder that load_scenario goes on from, exactly."""
+        return self.call("save_scenario", SaveScenario, name)
 
     # ---- what will be
 

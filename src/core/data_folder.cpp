@@ -76,6 +76,17 @@ std::string DataFolder::for_reading(const std::string& name) const {
   }
 }
 
+bool DataFolder::has_folder(const std::string& name) const {
+  try {
+    const fs::path root = fs::canonical(path_), folder = fs::weakly_canonical(root / checked_path(name));
+    require_below(root, folder, name);
+    return fs::is_directory(folder);
+  } catch (const ConfigError&) {
+  } catch (const fs::filesystem_error&) {
+  }
+  return false;
+}
+
 WritableFile DataFolder::for_writing(const std::string& name) const {
   const fs::path relative = checked_path(name);
   try {

@@ -1,5 +1,7 @@
 #include "src/io/terrain_files.hpp"
 
+#include <xxhash.h>
+
 #include <algorithm>
 #include <cctype>
 #include <cmath>
@@ -9,6 +11,7 @@
 
 #include "src/core/error.hpp"
 #include "src/core/files.hpp"
+#include "src/core/hash_text.hpp"
 #include "src/core/temporary_file.hpp"
 #include "src/io/snapshots.hpp"
 
@@ -18,8 +21,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* file_prefix = "terrain-";  // prefix of the files of a saved terrain
-const std::set<std::string> saved_extensions{".tif", ".png", ".bag"};
+/// How the files that a save writes beside its scenario file are named.
+struct FileNames {
+  std::string prefix;
+  std::set<std::string> extensions;
+};
+const FileNames terrain_names{"terrain-", {".tif", ".png", ".bag"}}, state_names{"state-", {".ckpt"}};
 
 /// Writes a 16-bit PNG, north up, and sets scale and offset: value = raw · scale + offset.
 void write_layer_png16(const std::string& path, const std::vector<float>& values, const Snapshot& s,
@@ -38,22 +45,29 @@ void write_layer_png16(const std::string& path, const std::vector<float>& values
   write_png(path, picture);
 }
 
-/// The names of the files of saved terrains in a folder, and of those that a save was killed over.
-std::set<std::string> saved_files(const fs::path& folder) {
+/// The names of the files of earlier saves in a folder, and of those that a save was killed over.
+std::set<std::string> saved_files(const fs::path& folder, const FileNames& of) {
   std::set<std::string> names;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
     const std::string name = entry.path().filename().string(), extension = entry.path().extension().string();
-    const bool whole = name.rfind(file_prefix, 0) == 0 && saved_extensions.count(extension) > 0;
-    const bool part = name.rfind("." + std::string(file_prefix), 0) == 0 && extension == ".part";
+    const bool whole = name.rfind(of.prefix, 0) == 0 && of.extensions.count(extension) > 0;
+    const bool part = name.rfind("." + of.prefix, 0) == 0 && extension == ".part";
     if (whole || part) names.insert(name);
   }
   return names;
 }
 
-/// Removes the files of saved terrains except those in `kept`.
-void remove_other_files(const fs::path& folder, const std::set<std::string>& kept) {
-  for (const std::string& name : saved_files(folder))
+/// Removes the files of earlier saves except those in `kept`.
+void remove_other_files(const fs::path& folder, const FileNames& of, const std::set<std::string>& kept) {
+  for (const std::string& name : saved_files(folder, of))
     if (kept.count(name) == 0) fs::remove(folder / name);
+}
+
+/// What a scenario file begins with. A checkpoint may give any name; a line break would end the comment.
+std::string comment_of(const char* start, std::uint64_t step, std::string name) {
+  std::replace_if(
+      name.begin(), name.end(), [](unsigned char c) { return std::iscntrl(c) != 0; }, '?');
+  return start + std::to_string(step) + " of " + name + ".\n";
 }
 
 /// Writes the layers and then the scenario file. Returns the names of the files of the layers.
@@ -64,16 +78,37 @@ std::set<std::string> write_terrain(const std::string& scenario_file, const fs::
   Scenario saved = scenario;
   saved.terrain.assign(layers.steps.begin(), layers.steps.end());
   saved.grid.from_raster = layers.georeferenced;
-  std::string name = scenario.name;  // a checkpoint may give any; a line break would end the comment
-  std::replace_if(
-      name.begin(), name.end(), [](unsigned char c) { return std::iscntrl(c) != 0; }, '?');
-  std::string comment = saved_terrain_comment + std::to_string(snapshot.step) + " of " + name + ".\n";
+  saved.run.start_from.clear();
+  std::string comment = comment_of(saved_terrain_comment, snapshot.step, scenario.name);
   if (saved.get<VegetationParameters>().enabled)
     comment += "# Its plants are not saved: others come up when it is loaded. A checkpoint keeps them.\n";
   write_file(scenario_file, comment + dump_scenario(saved));
   std::set<std::string> names;
   for (const RasterStep& step : layers.steps) names.insert(step.file);
   return names;
+}
+
+/// Calls `write`, which returns the names of the files that it has written beside `scenario_file`, in place
+/// of those of earlier saves: all of them, or none.
+void replace_saved(const std::string& scenario_file, const FileNames& of,
+                   const std::function<std::set<std::string>(const fs::path& folder)>& write) {
+  const fs::path parent = fs::path(scenario_file).parent_path(), folder = parent.empty() ? "." : parent;
+  const FolderLock lock(folder.string());
+  try {
+    require_writable_file(scenario_file);
+    const std::set<std::string> before = saved_files(folder, of);
+    std::set<std::string> written;
+    try {
+      written = write(folder);
+    } catch (...) {
+      remove_other_files(folder, of, before);
+      throw;
+    }
+    remove_other_files(folder, of, written);
+  } catch (const fs::filesystem_error& e) {
+    throw WriteError(folder.string() +
+                     ": the files of another save cannot be listed or removed: " + e.code().message());
+  }
 }
 
 }  // namespace
@@ -95,7 +130,7 @@ std::vector<Layer> persistent_layers(const Snapshot& snapshot) {
 }
 
 std::string layer_file_name(const std::string& what, const std::string& tag, const std::string& ending) {
-  return file_prefix + what + "-" + tag + ending;
+  return terrain_names.prefix + what + "-" + tag + ending;
 }
 
 LayerWriter geotiff_writer(const std::string& projection) {
@@ -130,23 +165,23 @@ LayerWriter png16_writer() {
 
 void save_terrain(const std::string& scenario_file, const Scenario& scenario, const Snapshot& snapshot,
                   const LayerWriter& write_layers, const std::string& tag) {
-  const fs::path parent = fs::path(scenario_file).parent_path(), folder = parent.empty() ? "." : parent;
-  const FolderLock lock(folder.string());
-  try {
-    require_writable_file(scenario_file);
-    const std::set<std::string> before = saved_files(folder);
-    std::set<std::string> written;
-    try {
-      written = write_terrain(scenario_file, folder, scenario, snapshot, write_layers, tag);
-    } catch (...) {
-      remove_other_files(folder, before);
-      throw;
-    }
-    remove_other_files(folder, written);
-  } catch (const fs::filesystem_error& e) {
-    throw WriteError(folder.string() +
-                     ": the files of another terrain cannot be listed or removed: " + e.code().message());
-  }
+  replace_saved(scenario_file, terrain_names, [&](const fs::path& folder) {
+    return write_terrain(scenario_file, folder, scenario, snapshot, write_layers, tag);
+  });
+}
+
+void save_scenario(const std::string& scenario_file, const Scenario& scenario, std::uint64_t step,
+                   const std::string& checkpoint) {
+  const std::string tag = hash_text(XXH3_64bits(checkpoint.data(), checkpoint.size()));
+  replace_saved(scenario_file, state_names, [&](const fs::path& folder) -> std::set<std::string> {
+    Scenario saved = scenario;
+    saved.terrain.clear();
+    saved.grid.from_raster.clear();
+    saved.run.start_from = state_names.prefix + tag + ".ckpt";
+    write_file((folder / saved.run.start_from).string(), checkpoint);
+    write_file(scenario_file, comment_of(saved_scenario_comment, step, scenario.name) + dump_scenario(saved));
+    return {saved.run.start_from};
+  });
 }
 
 }  // namespace desert_sim

@@ -1,5 +1,6 @@
 #pragma once
-/// Saves a terrain as files: its layers, and a scenario that builds the same terrain from them.
+/// Saves a terrain as files: its layers, and a scenario that builds the same terrain from them; or a scenario
+/// as it is now, with all of its state.
 
 #include <functional>
 #include <string>
@@ -41,5 +42,11 @@ LayerWriter png16_writer();
 /// an earlier terrain is then unchanged, and nothing new is left.
 void save_terrain(const std::string& scenario_file, const Scenario& scenario, const Snapshot& snapshot,
                   const LayerWriter& write_layers, const std::string& tag);
+
+/// Writes the state, as checkpoint_bytes() gives it, beside `scenario_file`, then that file itself:
+/// `scenario`, which is to be the present one, with `run.start_from`. Nothing is rounded and nothing left
+/// out: it goes on with the same bits. Other saves and errors as for save_terrain().
+void save_scenario(const std::string& scenario_file, const Scenario& scenario, std::uint64_t step,
+                   const std::string& checkpoint);
 
 }  // namespace desert_sim

@@ -7,6 +7,7 @@
 
 #include "src/core/did_you_mean.hpp"
 #include "src/core/joined.hpp"
+#include "src/core/quoted.hpp"
 #include "src/scenario/former_keys.hpp"
 #include "src/scenario/yaml_parameters.hpp"
 
@@ -44,6 +45,35 @@ std::map<std::string, std::string> collect_leaf_values(const Scenario& scenario)
   return found;
 }
 
+/// Lists beside the sections that can change, whole or in part.
+bool is_of_live_list(const std::string& path) {
+  const std::string list = path.substr(0, path.find('.'));
+  return list == "species" || list == "competition" || list == "growth_curves";
+}
+
+/// Species that settings have added compete by 1, like those of a scenario that says nothing of it.
+void complete_competition(YAML::Node root, std::size_t species_before) {
+  YAML::Node rows = root["competition"];
+  const std::size_t count = root["species"].IsSequence() ? root["species"].size() : 0;
+  if (!rows.IsSequence() || rows.size() != species_before || count <= species_before) return;
+  for (std::size_t k = 0; k < count; ++k)
+    for (std::size_t j = k < species_before ? species_before : 0; j < count; ++j) rows[k].push_back(1);
+}
+
+/// Plants refer to their species by its place.
+void check_species_kept(const Scenario& before, const Scenario& changed, ValidationErrors& errors) {
+  for (std::size_t n = 0; n < before.species.size(); ++n) {
+    const std::string &name = before.species[n].name, key = "species." + std::to_string(n);
+    if (n >= changed.species.size())
+      errors.add(key, in_quotes(name) + " is missing, which plants may be of (allowed: more species)");
+    else if (changed.species[n].name != name)
+      errors.add(key + ".name", in_quotes(changed.species[n].name) + " would take the place of " +
+                                    in_quotes(name) + ", which plants may be of (allowed: this name)");
+  }
+  if (before.get<VegetationParameters>().enabled && !changed.get<VegetationParameters>().enabled)
+    errors.add("vegetation.enabled", "false would end the plants that live (allowed: true)");
+}
+
 }  // namespace
 
 const char* fixed_reason(const std::string& path) {
@@ -73,13 +103,18 @@ Scenario with_live_settings(const Scenario& scenario, const Settings& settings) 
       errors.add(path, std::string("cannot change while the simulation runs: ") + why);
     } else if (const std::string now = instead_of_former_key(setting); !now.empty()) {
       errors.add(path, now);
-    } else if (!live.count(path)) {
+    } else if (!live.count(path) && !is_of_live_list(path)) {
       errors.add(path,
                  "unknown parameter (config/parameters.md lists all)" + did_you_mean(path, joined(live)));
     }
   }
   errors.throw_if_any();
-  Scenario changed = parse_scenario_text(dump_scenario(scenario), "set_parameters", settings);
+  YAML::Node root = YAML::Load(dump_scenario(scenario));
+  for (const std::string& setting : settings) apply_setting(root, setting);
+  complete_competition(root, scenario.species.size());
+  Scenario changed = parse_scenario(root, "set_parameters", "");
+  check_species_kept(scenario, changed, errors);
+  errors.throw_if_any();
   changed.name = scenario.name;
   changed.folder = scenario.folder;
   changed.projection = scenario.projection;

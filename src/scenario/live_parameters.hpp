@@ -18,13 +18,10 @@ constexpr FixedParameter fixed_parameters[] = {
     {"seed", "the initial terrain was generated with it"},
     {"grid", "the layers are allocated for this grid"},
     {"terrain", "it describes the initial terrain"},
-    {"vegetation.enabled", "plants are set up at the start of a simulation"},
     {"vegetation.max_plants", "the memory of the plants is allocated for this number"},
-    {"species", "existing plants refer to them"},
-    {"competition", "it belongs to the list of species"},
-    {"growth_curves", "plants grow by the same curves in every year of a run"},
     {"run.steps", "it is the length of a headless run"},
     {"run.duration", "it is the length of a headless run"},
+    {"run.start_from", "it is the start of a simulation"},
     {"run.timeline", "it begins at the start of a simulation"},
     {"wind.series_file", "it is read at the start of a simulation"},
     {"wind.series_direction", "it belongs to wind.series_file"},
@@ -53,8 +50,11 @@ void for_each_live_parameter(const Scenario& scenario, Visit&& visit) {
                         });
 }
 
-/// A copy of `scenario` with some parameters set ("wind.speed=7"). Throws ConfigError that lists all settings
-/// that cannot change, are unknown, or have an invalid value.
+/// A copy of `scenario` with some parameters set ("wind.speed=7"). Of the lists `species`, `competition` and
+/// `growth_curves`, too, whole or in part ("species.0.max_radius=2"): a species keeps its place and name,
+/// because plants refer to it, and others may follow ("species.2={preset: tree}"), which compete by 1. Plants
+/// can begin to live (vegetation.enabled), but not end. Throws ConfigError that lists all settings that
+/// cannot change, are unknown, or have an invalid value.
 Scenario with_live_settings(const Scenario& scenario, const Settings& settings);
 
 /// The parameters of `now` that differ from `before`, as path and value; a list counts as one value.

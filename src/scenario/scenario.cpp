@@ -3,7 +3,6 @@
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
-#include <cstring>
 
 #include "kernels/field/layers.hpp"
 #include "src/core/did_you_mean.hpp"
@@ -21,8 +20,6 @@
 namespace desert_sim {
 
 namespace {
-
-constexpr std::uint64_t max_scenario_bytes = std::uint64_t{1} << 24;
 
 /// Checks that `layer` of a terrain step names a persistent layer.
 template <class Step>
@@ -95,6 +92,9 @@ void check_dependencies(const Scenario& s, ValidationErrors& errors) {
   check_wind_segments(s.wind_regime.regime, s.wind_segments, "wind.segments", errors);
   if (s.wind_regime.regime == WindRegimeKind::series && s.wind_regime.series_file.empty())
     errors.add("wind.series_file", "is missing, which the regime 'series' needs");
+  if (!s.run.start_from.empty() && !(s.terrain.empty() && s.grid.from_raster.empty()))
+    errors.add(s.terrain.empty() ? "grid.from_raster" : "terrain",
+               "is given, but run.start_from has the start (allowed: one of both)");
   std::set<int> ids;
   for (std::size_t n = 0; n < s.wind_features.size(); ++n)
     if (const int id = s.wind_features[n].id; id != 0 && !ids.insert(id).second)
@@ -106,16 +106,18 @@ void check_dependencies(const Scenario& s, ValidationErrors& errors) {
       errors.add("terrain." + std::to_string(n) + ".discs.radius_high", "must not be below radius_low");
 }
 
+}  // namespace
+
 void apply_setting(YAML::Node root, const std::string& setting) {
   const std::size_t equals = setting.find('=');
   if (equals == std::string::npos || equals == 0)
-    throw ConfigError("--set '" + setting + "': must be path=value");
+    throw ConfigError("setting '" + setting + "': must be path=value");
   const std::string path = setting.substr(0, equals);
   YAML::Node value;
   try {
     value = yaml::load_document(setting.substr(equals + 1));
   } catch (const YAML::Exception& e) {
-    throw ConfigError("--set '" + setting + "': " + e.msg);
+    throw ConfigError("setting '" + setting + "': " + e.msg);
   }
   YAML::Node node = root;
   std::size_t begin = 0;
@@ -124,10 +126,10 @@ void apply_setting(YAML::Node root, const std::string& setting) {
     const std::string key = path.substr(begin, dot == std::string::npos ? dot : dot - begin);
     const bool numeric = !key.empty() && key.find_first_not_of("0123456789") == std::string::npos;
     if (node.IsSequence() && (!numeric || key.size() > 6 || std::stoul(key) > node.size()))
-      throw ConfigError("--set '" + setting + "': '" + key + "' is not an index into a list of " +
+      throw ConfigError("setting '" + setting + "': '" + key + "' is not an index into a list of " +
                         std::to_string(node.size()));
     if (node.IsScalar())
-      throw ConfigError("--set '" + setting + "': there is no key below '" +
+      throw ConfigError("setting '" + setting + "': there is no key below '" +
                         path.substr(0, begin ? begin - 1 : 0) + "'");
     YAML::Node next = node.IsSequence() ? node[std::stoul(key)] : node[key];
     if (dot == std::string::npos) {
@@ -138,21 +140,6 @@ void apply_setting(YAML::Node root, const std::string& setting) {
     begin = dot + 1;
   }
 }
-
-std::string parent_folder(const std::string& path) {
-  const std::size_t slash = path.rfind('/');
-  return slash == std::string::npos ? "." : path.substr(0, slash + 1);
-}
-
-std::string base_name(const std::string& path) {
-  const std::size_t slash = path.rfind('/');
-  const std::string file = slash == std::string::npos ? path : path.substr(slash + 1);
-  return file.substr(0, file.rfind('.'));
-}
-
-}  // namespace
-
-namespace {
 
 Scenario parse_with_settings(const std::string& text, const std::string& source, const std::string& folder,
                              const Settings& settings) {
@@ -178,7 +165,16 @@ std::string path_that_is_meant(const std::string& key) {
   return with_this_key.size() > 3 ? "" : "; did you mean " + joined(with_this_key) + "?";
 }
 
-}  // namespace
+std::string parent_folder(const std::string& path) {
+  const std::size_t slash = path.rfind('/');
+  return slash == std::string::npos ? "." : path.substr(0, slash + 1);
+}
+
+std::string base_name(const std::string& path) {
+  const std::size_t slash = path.rfind('/');
+  const std::string file = slash == std::string::npos ? path : path.substr(slash + 1);
+  return file.substr(0, file.rfind('.'));
+}
 
 Scenario load_scenario(const std::string& path, const Settings& settings, const std::string& folder) {
   const InputFile file(path, folder);
@@ -186,14 +182,16 @@ Scenario load_scenario(const std::string& path, const Settings& settings, const 
     throw ConfigError(path + ": has " + std::to_string(file.size()) + " bytes (allowed: at most " +
                       std::to_string(max_scenario_bytes) + ")");
   const std::string text = file.read_all();
-  const bool saved = text.compare(0, std::strlen(saved_terrain_comment), saved_terrain_comment) == 0;
+  const auto begins_with = [&text](const char* start) { return text.rfind(start, 0) == 0; };
+  const bool saved = begins_with(saved_terrain_comment) || begins_with(saved_scenario_comment);
   Scenario s = parse_with_settings(saved ? migrated(text, path) : text, path, parent_folder(path), settings);
   s.name = base_name(path);
   return s;
 }
 
-Scenario parse_scenario_text(const std::string& yaml, const std::string& name, const Settings& settings) {
-  return parse_with_settings(yaml, name, "", settings);
+Scenario parse_scenario_text(const std::string& yaml, const std::string& name, const Settings& settings,
+                             const std::string& folder) {
+  return parse_with_settings(yaml, name, folder, settings);
 }
 
 Scenario parse_scenario(const YAML::Node& given, const std::string& name, const std::string& folder) {

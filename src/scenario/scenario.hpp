@@ -68,6 +68,7 @@ struct RunParameters {
   float time_step = 1.0f;
   float acceleration = 0.0f;
   int check_every = 100;
+  std::string start_from;
 };
 
 constexpr auto parameter_table(const RunParameters*) {
@@ -81,7 +82,10 @@ constexpr auto parameter_table(const RunParameters*) {
                                    "Simulated seconds per second of ROS time: the node makes acceleration / "
                                    "time_step steps per second; 0: its parameter step_rate says how many."),
                          parameter("check_every", &P::check_every, 0, 1000000, "steps",
-                                   "How often the state is searched for NaN and negative depths; 0 never."));
+                                   "How often the state is searched for NaN and negative depths; 0 never."),
+                         parameter("start_from", &P::start_from,
+                                   "Checkpoint that has the start in place of terrain steps: layers, plants, "
+                                   "clock, wind. ~save_scenario writes both; the grid must be the same."));
 }
 static_assert(table_is_complete<RunParameters>());
 
@@ -129,13 +133,22 @@ using Settings = std::vector<std::string>;
 
 /// These functions read and check a scenario. They throw ConfigError that lists all errors, each with file,
 /// key, value and allowed range.
-/// A file has at most 16 MiB, and lies below `folder` if one is given.
+/// A file has at most max_scenario_bytes, and lies below `folder` if one is given.
+constexpr std::uint64_t max_scenario_bytes = std::uint64_t{1} << 24;
 Scenario load_scenario(const std::string& path, const Settings& settings = {},
                        const std::string& folder = "");
-Scenario parse_scenario_text(const std::string& yaml, const std::string& name, const Settings& settings = {});
+/// `folder`: which relative paths of files in it begin at.
+Scenario parse_scenario_text(const std::string& yaml, const std::string& name, const Settings& settings = {},
+                             const std::string& folder = "");
 Scenario parse_scenario(const YAML::Node& root, const std::string& name, const std::string& folder);
-/// What the scenario file of a saved terrain begins with.
+/// What the file of a saved terrain, or of a scenario saved with its state, begins with.
 constexpr const char* saved_terrain_comment = "# A terrain saved at step ";
+constexpr const char* saved_scenario_comment = "# A scenario saved at step ";
+/// Overrides one key of a scenario's YAML. Throws ConfigError.
+void apply_setting(YAML::Node root, const std::string& setting);
+/// The folder of a file, with the slash; "." of a name alone. The name of a scenario in a file.
+std::string parent_folder(const std::string& path);
+std::string base_name(const std::string& path);
 /// The scenario as YAML with all parameters, defaults included. Of a scenario whose grid is resolved,
 /// parse_scenario() reads back the same one.
 std::string dump_scenario(const Scenario& scenario);

@@ -111,6 +111,17 @@ void emit_species(YAML::Emitter& out, const Scenario& s) {
   out << YAML::EndSeq;
 }
 
+bool same_species(const Scenario& a, const Scenario& b) {
+  YAML::Emitter texts[2];
+  for (int n = 0; n < 2; ++n) {
+    yaml::set_full_precision(texts[n]);
+    texts[n] << YAML::BeginMap;
+    emit_species(texts[n], n == 0 ? a : b);
+    texts[n] << YAML::EndMap;
+  }
+  return texts[0].size() == texts[1].size() && std::string(texts[0].c_str()) == texts[1].c_str();
+}
+
 void check_species(const Scenario& s, ValidationErrors& errors) {
   std::set<std::string> names;
   for (std::size_t n = 0; n < s.species.size(); ++n) {

@@ -63,6 +63,8 @@ Species species_preset(const std::string& name);
 void read_species(const YAML::Node& root, ValidationErrors& errors, Scenario& scenario);
 /// Writes both keys as entries of an open map, with all parameters.
 void emit_species(YAML::Emitter& out, const Scenario& scenario);
+/// Whether both keys say the same in both.
+bool same_species(const Scenario& a, const Scenario& b);
 /// Checks conditions on species that involve more than one key.
 void check_species(const Scenario& scenario, ValidationErrors& errors);
 

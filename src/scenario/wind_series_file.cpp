@@ -291,7 +291,7 @@ WindSeries parse_wind_series(const std::string& text, const std::string& source,
 
 void read_wind_series(Scenario& s, const std::string& folder) {
   const WindRegimeParameters& wind = s.wind_regime;
-  if (s.wind_series || wind.series_file.empty()) return;
+  if (s.wind_series || wind.series_file.empty() || !s.run.start_from.empty()) return;
   const std::string path = raster_path(s, wind.series_file);
   const InputFile file(path, folder);
   if (file.size() > max_series_bytes)

@@ -29,7 +29,8 @@ struct SeriesFormat {
 /// rows.
 WindSeries parse_wind_series(const std::string& text, const std::string& source, const SeriesFormat& format);
 
-/// Reads the series that the scenario names, unless it has it already; with a `folder`, only from below it.
+/// Reads the series that the scenario names, unless it has it already or begins with a checkpoint, which has
+/// it; with a `folder`, only from below it.
 void read_wind_series(Scenario& scenario, const std::string& folder = "");
 
 }  // namespace desert_sim

@@ -8,10 +8,12 @@
 #include "src/scenario/band_terrain.hpp"
 #include "src/scenario/former_keys.hpp"
 #include "src/scenario/live_parameters.hpp"
+#include "src/scenario/raster_grid.hpp"
 #include "src/scenario/wind_series_file.hpp"
 #include "src/scenario/yaml_parameters.hpp"
 #include "src/simulation/checkpoint.hpp"
 #include "src/simulation/processes/settings_without_effect.hpp"
+#include "src/simulation/start.hpp"
 
 namespace desert_sim {
 
@@ -39,9 +41,10 @@ Session::Session(const Scenario& scenario, const RasterLoader& load_raster, cons
   resolve_grid(resolved, load_raster_);
   read_wind_series(resolved);
   exec_ = make_exec(backend, threads, &backend_choice_);
-  replace_simulation(std::make_unique<Simulation>(*exec_, resolved, load_raster_));
+  replace_simulation(simulation_at_start(*exec_, resolved, load_raster_));
   warn_of_settings_without_effect(resolved);
   if (journal_path.empty()) return;
+  note_start();
   journal_path_ = journal_path;
   journal_ =
       std::make_unique<JournalWriter>(journal_path, scenario_hash(resolved), exec_->backend(), undo_memory);
@@ -96,39 +99,47 @@ void Session::step() {
       log_warning("step " + std::to_string(simulation_->steps()) + ": " + process + ": " + text);
 }
 
-Scenario Session::read_scenario(const command::LoadScenario& command) const {
-  return command.terrain_only && is_bag(command.path)
-             ? scenario_from_bands(command.path, load_raster_, command.fill_nodata)
-             : desert_sim::load_scenario(command.path, {}, command.folder.empty() ? folder_ : command.folder);
+Scenario Session::read_scenario(const command::LoadScenario& command, const std::string& folder) const {
+  if (command.terrain_only && is_bag(command.path))
+    return scenario_from_bands(command.path, load_raster_, command.fill_nodata);
+  if (command.yaml.empty()) return desert_sim::load_scenario(command.path, command.settings, folder);
+  return parse_scenario_text(command.yaml, base_name(command.path), command.settings,
+                             parent_folder(command.path));
 }
 
 std::uint64_t Session::load_scenario(const command::LoadScenario& command) {
-  Scenario next = read_scenario(command);
+  const std::string& folder = command.folder.empty() ? folder_ : command.folder;
+  Scenario next = read_scenario(command, folder);
   if (command.terrain_only) {
     Scenario merged = simulation_->state().start;
     merged.grid = next.grid;
     merged.terrain = next.terrain;
     merged.folder = next.folder;
     merged.projection.clear();
+    merged.run.start_from.clear();
     ValidationErrors errors(command.path);
+    if (!next.run.start_from.empty())
+      errors.add("run.start_from",
+                 "has a state, of which the terrain cannot be taken alone (allowed: terrain)");
     check_sections(merged, errors);  // which the terrain's vegetation must not meet
     errors.throw_if_any();
     next = std::move(merged);
   }
   resolve_grid(next, load_raster_);
-  read_wind_series(next, command.folder.empty() ? folder_ : command.folder);
-  auto simulation = std::make_unique<Simulation>(*exec_, next, load_raster_);
+  read_wind_series(next, folder);
+  auto simulation = simulation_at_start(*exec_, next, load_raster_, folder);
   const std::uint64_t hash = simulation->state().hash();
   if (command.hash != 0 && command.hash != hash)
     throw ConfigError(command.path +
                       ": is not the scenario that the journal recorded (its state hash differs)");
   replace_simulation(std::move(simulation));
+  start_folder_ = folder;
   if (!command.terrain_only) warn_of_settings_without_effect(simulation_->state().start);
   return hash;
 }
 
 CommandResult Session::execute(const command::Reset&, bool, Command&) {
-  replace_simulation(std::make_unique<Simulation>(*exec_, simulation_->state().start, load_raster_));
+  replace_simulation(simulation_at_start(*exec_, simulation_->state().start, load_raster_, start_folder_));
   return {};
 }
 
@@ -139,12 +150,16 @@ CommandResult Session::execute(const command::LoadCheckpoint& load, bool, Comman
     throw ConfigError(load.path +
                       ": is not the checkpoint that the journal recorded (its state hash differs)");
   replace_simulation(std::move(loaded));
+  start_folder_ = folder_;
   journalled = command::LoadCheckpoint{load.path, hash};
   return {};
 }
 
 CommandResult Session::execute(const command::LoadScenario& load, bool, Command& journalled) {
-  journalled = command::LoadScenario{load.path, load.terrain_only, load_scenario(load), load.fill_nodata};
+  command::LoadScenario loaded = load;
+  loaded.hash = load_scenario(load);
+  loaded.folder.clear();
+  journalled = loaded;
   return {};
 }
 
@@ -153,7 +168,8 @@ namespace {
 /// The file that a command loads; null if it loads none.
 const std::string* loaded_file(const Command& command) {
   if (const auto* load = std::get_if<command::LoadCheckpoint>(&command)) return &load->path;
-  if (const auto* load = std::get_if<command::LoadScenario>(&command)) return &load->path;
+  if (const auto* load = std::get_if<command::LoadScenario>(&command); load && load->yaml.empty())
+    return &load->path;
   return nullptr;
 }
 
@@ -166,7 +182,13 @@ CommandResult Session::apply(const Command& command, bool with_change) {
   if (!journal_) return result;
   journal_->write(ticks_, journalled);
   if (const std::string* loaded = loaded_file(journalled)) loaded_files_.insert(*loaded);
+  note_start();
   return result;
+}
+
+void Session::note_start() {
+  const Scenario& start = simulation_->state().start;
+  if (!start.run.start_from.empty()) starts_of_journal_.insert(raster_path(start, start.run.start_from));
 }
 
 CommandResult Session::replay(const Command& recorded) {
@@ -182,6 +204,7 @@ std::vector<std::string> Session::journal_files() const {
   if (!journal_) return {};
   std::vector<std::string> files{journal_path_};
   files.insert(files.end(), loaded_files_.begin(), loaded_files_.end());
+  files.insert(files.end(), starts_of_journal_.begin(), starts_of_journal_.end());
   return files;
 }
 
@@ -190,6 +213,13 @@ void Session::require_not_of_journal(const std::string& path) const {
     if (same_file(path, needed))
       throw ConfigError(path + ": cannot be saved: the journal " + journal_path_ +
                         " needs this file to be replayed (allowed: another name)");
+}
+
+void Session::require_no_start_of_journal(const std::string& folder) const {
+  for (const std::string& start : starts_of_journal_)
+    if (journal_ && same_file(folder, parent_folder(start)))
+      throw ConfigError(folder + ": cannot be saved to: the journal " + journal_path_ + " needs " + start +
+                        " to be replayed (allowed: another folder)");
 }
 
 void Session::save_checkpoint(const std::string& path) {

@@ -52,6 +52,9 @@ class Session {
   /// Throws ConfigError if `path` is one of journal_files(): the journal could not be replayed if another
   /// file took its place.
   void require_not_of_journal(const std::string& path) const;
+  /// Likewise if the journal needs a checkpoint that a scenario in `folder` begins with, which the next one
+  /// to be saved there would replace.
+  void require_no_start_of_journal(const std::string& folder) const;
   /// Writes a checkpoint by write_file(). Throws ConfigError also as require_not_of_journal() does.
   void save_checkpoint(const std::string& path);
 
@@ -67,20 +70,24 @@ class Session {
   CommandResult execute(const Other& command, bool with_change, Command&) {
     return simulation_->apply(command, with_change);
   }
-  Scenario read_scenario(const command::LoadScenario& command) const;
+  Scenario read_scenario(const command::LoadScenario& command, const std::string& folder) const;
+  /// Keeps the checkpoint that the scenario begins with for a replay.
+  void note_start();
   /// Returns the state hash at the new scenario's start.
   std::uint64_t load_scenario(const command::LoadScenario& command);
 
   RasterLoader load_raster_;
-  std::string folder_;       ///< that commands read files below; empty: they read any file
-  std::size_t undo_memory_;  ///< [bytes]
+  std::string folder_;        ///< that commands read files below; empty: they read any file
+  std::string start_folder_;  ///< likewise the checkpoint of the start, when a reset goes back to it
+  std::size_t undo_memory_;   ///< [bytes]
   std::string backend_choice_;
   std::unique_ptr<Exec> exec_;
   std::unique_ptr<Simulation> simulation_;
   std::unique_ptr<JournalWriter> journal_;
   std::string journal_path_;
-  std::set<std::string> loaded_files_;  ///< that the journal loads
-  std::set<std::string> warned_;        ///< processes whose warning has been logged
+  std::set<std::string> loaded_files_;       ///< that the journal loads
+  std::set<std::string> starts_of_journal_;  ///< checkpoints that its scenarios begin with
+  std::set<std::string> warned_;             ///< processes whose warning has been logged
   std::uint64_t ticks_ = 0;
 };
 

@@ -29,6 +29,8 @@ HeightScale scale_for(const HostLayers& layers, const Scenario& scenario, const 
 Terrain build(Exec& exec, const Scenario& scenario, const RasterLoader& load_raster,
               const ProcessTable& table) {
   table.require_runnable(scenario);
+  if (!scenario.run.start_from.empty())
+    throw Error(scenario.name + ": run.start_from: simulation_at_start() begins with a checkpoint");
   if (scenario.wind_regime.regime == WindRegimeKind::series && !scenario.wind_series)
     throw ConfigError(scenario.name + ": wind.series_file: has not been read");
   require_memory(exec, scenario, bytes_to_build(scenario));

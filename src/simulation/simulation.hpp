@@ -21,7 +21,8 @@ constexpr std::uint64_t max_simulation_steps = 1ULL << 53;
 
 class Simulation {
  public:
-  /// Builds the terrain. `scenario` must be resolved (see resolve_grid()). Throws ConfigError.
+  /// Builds the terrain. `scenario` must be resolved (see resolve_grid()), and not begin with a checkpoint
+  /// (see simulation_at_start()). Throws ConfigError.
   Simulation(Exec& exec, const Scenario& scenario, const RasterLoader& load_raster,
              const ProcessTable& table = process_table());
   /// A terrain without material, for a checkpoint to fill.

@@ -166,6 +166,14 @@ command::SetParameters RandomCommands::settings(const Simulation& simulation) {
       command.settings.push_back(text.str());
     });
   }
+  if (const std::size_t kinds = wanted.species.size(); kinds > 0 && one_in(6)) {
+    const std::string at = "species." + std::to_string(below(kinds));
+    const char* const changes[] = {".max_radius=0.7", ".spawn=3", ".name=\"other\"", ".stem=-1", "=[]"};
+    command.settings.push_back(at + changes[below(std::size(changes))]);
+  }
+  if (one_in(12) && wanted.species.size() < 4)
+    command.settings.push_back("species." + std::to_string(wanted.species.size()) +
+                               "={preset: palm, name: palm_" + std::to_string(wanted.species.size()) + "}");
   if (one_in(10)) command.settings.push_back("water.springs=[{x: 3, y: 4, discharge: 1e5}]  # \xff\t\n");
   command.ramp =
       one_in(2) ? 0 : (one_in(2) ? between(0, 20) : number(0, command::SetParameters::longest_ramp));

@@ -70,7 +70,9 @@ Command RandomStrokes::next(const std::string& stroke) {
   for (const EditedLayer& row : edited_layers) {
     const bool living = row.layer == Layer::vegetation && scenario.get<VegetationParameters>().enabled;
     const bool there = !row.scenarios || simulation_.terrain().has(row.layer);
-    if (there && !living && row.kind != EditKind::fleeting) layers.push_back(row);
+    const bool hangs =
+        row.layer == Layer::airborne_sand && !is_saltation(scenario.get<SandParameters>().model);
+    if (there && !living && !hangs && row.kind != EditKind::fleeting) layers.push_back(row);
   }
   const EditedLayer& row = layers[below(layers.size())];
   const bool painted = row.kind == EditKind::painted;

@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <optional>
 
 #include "src/core/did_you_mean.hpp"
+#include "src/io/raster_loader.hpp"
 #include "src/ros/services/request_fields.hpp"
 #include "src/ros/services/requests.hpp"
 
@@ -130,14 +132,50 @@ command::Patch patch_of(const sensor_msgs::Image& image, double scale) {
   return patch;
 }
 
-void set_patch(const EditTerrainRequest& request, command::EditTerrain& command) {
+/// A raster below the data folder as a patch: its values times `scale`, or from 0 at its lowest to 1 at its
+/// highest.
+command::Patch patch_of_file(const DataFolder& files, const std::string& name, std::optional<double> scale) {
+  RasterRequest request;
+  request.path = files.for_reading(name);
+  const RasterLoader load = gdal_raster_loader({files.path(), false});
+  const RasterField grid = load(request);
+  const auto cells = static_cast<long long>(grid.width) * grid.height;
+  if (cells > command::Patch::max_pixels)
+    throw ConfigError("image_file: " + in_quotes(name) + " has " + std::to_string(grid.width) + " x " +
+                      std::to_string(grid.height) + " cells (allowed: at most " +
+                      std::to_string(command::Patch::max_pixels) + " in all)");
+  request.width = grid.width, request.height = grid.height;
+  request.cell_size = grid.cell_size, request.origin_x = grid.origin_x, request.origin_y = grid.origin_y;
+  const std::vector<float> values = load(request).values;
+  const auto [low, high] = std::minmax_element(values.begin(), values.end());
+  const double range = static_cast<double>(*high) - *low;
+  command::Patch patch{grid.width, grid.height, {}};
+  patch.values.reserve(values.size());
+  for (int row = grid.height - 1; row >= 0; --row)  // a patch begins in the north, as a picture does
+    for (int column = 0; column < grid.width; ++column) {
+      const double value = values[static_cast<std::size_t>(row) * static_cast<std::size_t>(grid.width) +
+                                  static_cast<std::size_t>(column)];
+      patch.values.push_back(
+          static_cast<float>(scale ? value * *scale : (range > 0 ? (value - *low) / range : 1)));
+    }
+  return patch;
+}
+
+void set_patch(const EditTerrainRequest& request, const DataFolder& files, command::EditTerrain& command) {
   command.patch_use = request.image_use.empty()
                           ? PatchUse::heights
                           : choice_named<PatchUse>(patch_uses, request.image_use, "image_use");
   const bool heights = command.patch_use == PatchUse::heights;
   if (!heights) require_left_out(request.image_scale, "image_scale", "image_use 'mask' does not use it");
   if (heights) require_finite(request.image_scale, "image_scale");
-  command.patch = patch_of(request.image, heights ? request.image_scale : 1.0);
+  if (!request.image.data.empty())
+    require_left_out(request.image_file, "image_file", "image is given, which it would take the place of");
+  if (request.image_file.empty()) {
+    command.patch = patch_of(request.image, heights ? request.image_scale : 1.0);
+    return;
+  }
+  command.patch = patch_of_file(files, request.image_file,
+                                heights ? std::optional<double>(request.image_scale) : std::nullopt);
 }
 
 /// Refuses the fields that shape, merge and conserve do not use.
@@ -152,6 +190,7 @@ void check_edit_fields(const EditTerrainRequest& request, const command::EditTer
     require_left_out(request.falloff, "falloff", shape);
   if (!patch) {
     require_left_out(request.image.data, "image", shape);
+    require_left_out(request.image_file, "image_file", shape);
     require_left_out(request.image_use, "image_use", shape);
     require_left_out(request.image_scale, "image_scale", shape);
   }
@@ -167,7 +206,8 @@ void check_edit_fields(const EditTerrainRequest& request, const command::EditTer
 
 }  // namespace
 
-command::EditTerrain edit_command(const EditTerrainRequest& request, const TerrainTransforms& frames) {
+command::EditTerrain edit_command(const EditTerrainRequest& request, const TerrainTransforms& frames,
+                                  const DataFolder& files) {
   command::EditTerrain command;
   command.layer = request.layer;
   command.shape = choice_named<BrushShape>(brush_shapes, request.shape, "shape");
@@ -181,7 +221,7 @@ command::EditTerrain edit_command(const EditTerrainRequest& request, const Terra
   else
     set_rectangle(request, transform, command);
   if (capsule) command.radius = request.radius;
-  if (patch) set_patch(request, command);
+  if (patch) set_patch(request, files, command);
   (polygon || patch ? command.falloff : command.inner) = polygon || patch ? request.falloff : request.inner;
   if (command.merge == BrushMerge::smooth) {
     command.smooth_radius = request.smooth_radius;

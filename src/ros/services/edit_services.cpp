@@ -77,14 +77,14 @@ void add_edit_services(Services& services) {
   const ServiceContext& c = services.context();
   const ros::Publisher terrain_diff = ros::NodeHandle(c.node).advertise<TerrainDiff>("terrain_diff", 100);
 
-  services.add<EditTerrain>(
-      "edit_terrain", [&c, terrain_diff](const EditTerrainRequest& request, EditTerrainResponse& response) {
-        const ReachedState reached = apply_and_tell(c, terrain_diff, edit_command(request, c.frames));
-        response.volume = reached.result.volume_m3;
-        response.moved = reached.result.moved_m3;
-        set_rectangle(reached.result.changed_cells, response);
-        response.step = reached.moment.step;
-      });
+  services.add<EditTerrain>("edit_terrain", [&c, terrain_diff](const EditTerrainRequest& request,
+                                                               EditTerrainResponse& response) {
+    const ReachedState reached = apply_and_tell(c, terrain_diff, edit_command(request, c.frames, c.files));
+    response.volume = reached.result.volume_m3;
+    response.moved = reached.result.moved_m3;
+    set_rectangle(reached.result.changed_cells, response);
+    response.step = reached.moment.step;
+  });
   services.add<EditPlants>(
       "edit_plants", [&c](const EditPlantsRequest& request, EditPlantsResponse& response) {
         const ReachedState reached = c.simulation.apply(plants_command(request, c.frames)).get();

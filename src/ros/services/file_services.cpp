@@ -3,7 +3,9 @@
 #include <desert_sim/LoadCheckpoint.h>
 #include <desert_sim/LoadScenario.h>
 #include <desert_sim/LoadTerrain.h>
+#include <desert_sim/NewScenario.h>
 #include <desert_sim/SaveCheckpoint.h>
+#include <desert_sim/SaveScenario.h>
 #include <desert_sim/SaveTerrain.h>
 #include <ros/console.h>
 
@@ -25,10 +27,12 @@ namespace {
 
 constexpr const char* terrain_file = "terrain.yaml";  // in the folder of a saved terrain
 
+constexpr const char* state_file = "scenario.yaml";  // of a scenario saved with its state
+
 /// A name that is no file's either may be that of an installed scenario, mistyped.
 std::string scenario_below_data_folder(const DataFolder& files, const std::string& name) {
   try {
-    return files.for_reading(name);
+    return files.for_reading(name + (files.has_folder(name) ? std::string("/") + state_file : ""));
   } catch (const ConfigError& e) {
     if (name.find('/') != std::string::npos) throw;
     const std::string known = joined(installed_scenarios());
@@ -112,6 +116,36 @@ void save_terrain_folder(const ServiceContext& c, const SaveTerrainRequest& requ
            response.path.c_str());
 }
 
+void save_scenario_folder(const ServiceContext& c, const SaveScenarioRequest& request,
+                          SaveScenarioResponse& response) {
+  const WritableFile file = c.files.for_writing(request.name + "/" + state_file);
+  const ScenarioToSave saved = c.simulation.scenario_to_save(file.path()).get();
+  file.write([&](const std::string& path) {
+    save_scenario(path, saved.scenario, saved.moment.step, saved.checkpoint);
+  });
+  response.path = file.path();
+  response.step = saved.moment.step;
+  response.state_hash = hash_text(saved.hash);
+  ROS_INFO("The scenario was saved at step %lu to %s.", static_cast<unsigned long>(response.step),
+           response.path.c_str());
+}
+
+/// The command that starts a text; files that it names are looked up below the data folder.
+command::LoadScenario new_scenario(const DataFolder& files, const NewScenarioRequest& request) {
+  const std::string name = request.name.empty() ? "new" : request.name;
+  if (name.find('/') != std::string::npos)
+    throw ConfigError("name: " + in_quotes(name) + " has a '/' (allowed: a name, which is no path)");
+  if (request.yaml.empty()) throw ConfigError("yaml: is empty (allowed: the text of a scenario)");
+  if (request.yaml.size() > max_scenario_bytes)
+    throw ConfigError("yaml: has " + std::to_string(request.yaml.size()) + " bytes (allowed: at most " +
+                      std::to_string(max_scenario_bytes) + ")");
+  command::LoadScenario command;
+  command.path = files.path() + "/" + name + ".yaml";
+  command.yaml = request.yaml;
+  command.settings = request.settings;
+  return command;
+}
+
 }  // namespace
 
 void add_file_services(Services& services) {
@@ -144,8 +178,17 @@ void add_file_services(Services& services) {
           command.path = scenario_below_data_folder(c.files, request.name);
         else
           command.folder = installed_scenario_folder();
+        command.settings = request.settings;
         response.state_hash = loader->load_scenario(command);
       });
+  services.add<SaveScenario>("save_scenario",
+                             [&c](const SaveScenarioRequest& request, SaveScenarioResponse& response) {
+                               save_scenario_folder(c, request, response);
+                             });
+  services.add<NewScenario>("new_scenario",
+                            [&c, loader](const NewScenarioRequest& request, NewScenarioResponse& response) {
+                              response.state_hash = loader->load_scenario(new_scenario(c.files, request));
+                            });
 }
 
 }  // namespace desert_sim

@@ -10,6 +10,7 @@
 #include <desert_sim/SetWindSchedule.h>
 #include <geometry_msgs/Vector3Stamped.h>
 
+#include "src/core/data_folder.hpp"
 #include "src/ros/conversion/terrain_transforms.hpp"
 #include "src/simulation/commands/command.hpp"
 
@@ -23,6 +24,8 @@ command::SetParameters weather_command(const SetWeatherRequest& request);
 command::SetWind cmd_wind_command(const geometry_msgs::Vector3Stamped& message,
                                   const TerrainTransforms& frames);
 command::EditPlants plants_command(const EditPlantsRequest& request, const TerrainTransforms& frames);
-command::EditTerrain edit_command(const EditTerrainRequest& request, const TerrainTransforms& frames);
+/// `files`: where rasters lie that the request names.
+command::EditTerrain edit_command(const EditTerrainRequest& request, const TerrainTransforms& frames,
+                                  const DataFolder& files);
 
 }  // namespace desert_sim

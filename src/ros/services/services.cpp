@@ -8,6 +8,7 @@ Services::Services(ServiceContext context) : context_(std::move(context)) {
   add_map_services(*this);
   add_run_services(*this);
   add_file_services(*this);
+  add_parameter_services(*this);
 }
 
 }  // namespace desert_sim

@@ -85,10 +85,12 @@ class SimulationThread {
   /// For a scenario file at `path`. Refused if the journal needs the file that is there: see
   /// Session::require_not_of_journal().
   std::future<TerrainToSave> terrain_to_save(const std::string& path);
+  std::future<ScenarioToSave> scenario_to_save(const std::string& path);
   /// Gives back what is kept of a layer for subscribers.
   std::future<void> forget(Layer layer);
   /// The scenario with the present parameters and the present wind regime.
   std::future<Scenario> scenario();
+  std::future<Scenario> scenario_at_start();
   /// `measure`: processes are timed for a while from now on, which costs some speed.
   std::future<StatusReport> report(bool measure = true);
   std::future<ReachedState> save_checkpoint(const std::string& path);

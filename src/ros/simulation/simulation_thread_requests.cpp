@@ -170,6 +170,16 @@ std::future<TerrainToSave> SimulationThread::terrain_to_save(const std::string& 
       });
 }
 
+std::future<ScenarioToSave> SimulationThread::scenario_to_save(const std::string& path) {
+  return submit<ScenarioToSave>([this, path] {
+    session_->require_not_of_journal(path);
+    session_->require_no_start_of_journal(parent_folder(path));
+    wait_for_steps();
+    const Simulation& s = session_->simulation();
+    return ScenarioToSave{moment(), s.state().present_scenario(), checkpoint_bytes(s), state_hash()};
+  });
+}
+
 std::future<ReachedState> SimulationThread::save_checkpoint(const std::string& path) {
   return submit<ReachedState>([=] {
     wait_for_steps();
@@ -192,6 +202,10 @@ std::future<ForecastStart> SimulationThread::forecast_start(const ForecastParame
     require_memory_for_forecast(s, options);
     return ForecastStart{moment(), checkpoint_bytes(s), s.exec().backend()};
   });
+}
+
+std::future<Scenario> SimulationThread::scenario_at_start() {
+  return submit<Scenario>([this] { return session_->simulation().state().start; });
 }
 
 std::future<Scenario> SimulationThread::scenario() {

@@ -52,6 +52,14 @@ struct TerrainToSave {
   std::uint64_t hash = 0;
 };
 
+/// What save_scenario() takes: the present scenario and its state.
+struct ScenarioToSave {
+  Moment moment;
+  Scenario scenario;
+  std::string checkpoint;
+  std::uint64_t hash = 0;
+};
+
 /// The state in which a command or a request for steps ended.
 struct ReachedState {
   Moment moment;

@@ -83,10 +83,10 @@ struct EditParameters {
 constexpr auto parameter_table(const EditParameters*) {
   using P = EditParameters;
   return std::make_tuple(
-      parameter(
-          "layer", &P::layer,
-          "sand, bedrock, soil, water, moisture, obstacle, vegetation, erosion_resistance, grass, mesquite, "
-          "shrub, snow_density or looseness."),
+      parameter("layer", &P::layer,
+                "sand, bedrock, soil, water, moisture, airborne_sand, obstacle, vegetation, "
+                "erosion_resistance, humus, "
+                "grass, mesquite, shrub, snow_density or looseness."),
       parameter("shape", &P::shape, brush_shapes, "Shape of the brush."),
       parameter("merge", &P::merge, brush_merges, "How the brush meets what is there."),
       parameter("x", &P::x, -1e7, 1e7, "m", "Centre, in the terrain's frame."),
@@ -136,7 +136,7 @@ struct Patch {
 /// `ring_width` of the shape: what is taken in proportion to what they have, of bedrock and what is given in
 /// equal parts. The sum of all changes is then 0, to the quantum. What is no material (vegetation is the
 /// density of plants that do not live) has values in the layer's range, cannot be conserved, and is kept in
-/// steps of 2⁻²⁰, of snow_density of 2⁻¹⁴.
+/// steps of 2⁻²⁰, of snow_density of 2⁻¹⁴, of humus in quanta.
 /// Edits of looseness are no strokes that undo knows, because the sand that moves changes it besides.
 struct EditTerrain : EditParameters {
   static constexpr const char* name = "edit_terrain";
@@ -231,13 +231,16 @@ struct LoadCheckpoint {
 /// Another scenario from its start; with `terrain_only`, only its grid and terrain under the physics and wind
 /// of the present one. A reset goes back to it from then on. `path` as the process can open it; with
 /// `terrain_only` it may be a bag (see scenario_from_bands()), whose gaps `fill_nodata` fills. `hash` as in
-/// LoadCheckpoint.
+/// LoadCheckpoint. `settings` ("grid.width=512") override keys of it. `yaml`, if it is not empty, is what the
+/// file would have: then there is none, and `path` only says where files that it names begin, and its name.
 struct LoadScenario {
   static constexpr const char* name = "load_scenario";
   std::string path;
   bool terrain_only = false;
   std::uint64_t hash = 0;
   bool fill_nodata = false;
+  std::vector<std::string> settings{};
+  std::string yaml{};
   /// The file lies below this folder instead of the one that Session::confine_commands() was told; empty: it
   /// does not. A journal does not have it, because a replay is not confined.
   std::string folder{};

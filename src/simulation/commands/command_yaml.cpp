@@ -184,21 +184,30 @@ command::EditPlants read(Type<command::EditPlants>, const YAML::Node& node, cons
   return {read_all<command::EditPlantsParameters>(node, source), read_points(node, source)};
 }
 
-void emit(YAML::Emitter& out, const command::SetParameters& parameters) {
+void emit_settings(YAML::Emitter& out, const std::vector<std::string>& settings) {
   out << YAML::Key << "settings" << YAML::Value << YAML::Flow << YAML::BeginSeq;
-  for (const std::string& setting : parameters.settings) out << YAML::DoubleQuoted << setting;
+  for (const std::string& setting : settings) out << YAML::DoubleQuoted << setting;
   out << YAML::EndSeq;
+}
+
+std::vector<std::string> read_settings(const YAML::Node& node, const std::string& source) {
+  const YAML::Node list = required(node, "settings", source);
+  const char* const what = ": settings: must be a list of path=value";
+  if (!list.IsSequence()) throw ConfigError(source + what);
+  std::vector<std::string> settings;
+  for (const YAML::Node& setting : list) {
+    if (!setting.IsScalar()) throw ConfigError(source + what);
+    settings.push_back(setting.Scalar());
+  }
+  return settings;
+}
+
+void emit(YAML::Emitter& out, const command::SetParameters& parameters) {
+  emit_settings(out, parameters.settings);
   out << YAML::Key << "ramp" << YAML::Value << parameters.ramp;
 }
 command::SetParameters read(Type<command::SetParameters>, const YAML::Node& node, const std::string& source) {
-  command::SetParameters command{{}, scalar<double>(node, "ramp", source)};
-  const YAML::Node settings = required(node, "settings", source);
-  if (!settings.IsSequence()) throw ConfigError(source + ": settings: must be a list of path=value");
-  for (const YAML::Node& setting : settings) {
-    if (!setting.IsScalar()) throw ConfigError(source + ": settings: must be a list of path=value");
-    command.settings.push_back(setting.Scalar());
-  }
-  return command;
+  return {read_settings(node, source), scalar<double>(node, "ramp", source)};
 }
 
 void emit(YAML::Emitter&, const command::Reset&) {}
@@ -218,10 +227,16 @@ void emit(YAML::Emitter& out, const command::LoadScenario& load) {
   out << YAML::Key << "terrain_only" << YAML::Value << load.terrain_only;
   out << YAML::Key << "hash" << YAML::Value << load.hash;
   out << YAML::Key << "fill_nodata" << YAML::Value << load.fill_nodata;
+  if (!load.settings.empty()) emit_settings(out, load.settings);
+  if (!load.yaml.empty()) out << YAML::Key << "yaml" << YAML::Value << YAML::DoubleQuoted << load.yaml;
 }
 command::LoadScenario read(Type<command::LoadScenario>, const YAML::Node& node, const std::string& source) {
-  return {scalar<std::string>(node, "path", source), scalar<bool>(node, "terrain_only", source),
-          scalar<std::uint64_t>(node, "hash", source), scalar<bool>(node, "fill_nodata", source)};
+  command::LoadScenario load{
+      scalar<std::string>(node, "path", source), scalar<bool>(node, "terrain_only", source),
+      scalar<std::uint64_t>(node, "hash", source), scalar<bool>(node, "fill_nodata", source)};
+  if (node["settings"]) load.settings = read_settings(node, source);
+  if (node["yaml"]) load.yaml = scalar<std::string>(node, "yaml", source);
+  return load;
 }
 
 template <std::size_t N = 0>

@@ -30,9 +30,11 @@ constexpr EditedLayer edited_layers[] = {
     {Layer::soil, EditKind::material, "with a step that fills soil"},
     {Layer::water, EditKind::material, "with rain, springs, a sea or a step that fills water"},
     {Layer::moisture, EditKind::material, "with moisture.enabled or a step that fills moisture"},
+    {Layer::airborne_sand, EditKind::material, nullptr},
     {Layer::obstacle, EditKind::painted, nullptr},
     {Layer::vegetation, EditKind::painted, nullptr},
     {Layer::erosion_resistance, EditKind::painted, nullptr},
+    {Layer::humus, EditKind::painted, "with vegetation.enabled or a step that fills humus"},
     {Layer::grass, EditKind::painted, "with sand.model nield_baas"},
     {Layer::mesquite, EditKind::painted, "with sand.model nield_baas"},
     {Layer::shrub, EditKind::painted, "with sand.model nield_baas"},
@@ -49,7 +51,7 @@ inline const EditedLayer* find_edited_layer(const std::string& name) {
 }
 inline EditKind edit_kind(Layer layer) { return find_edited_layer(info(layer).name)->kind; }
 
-/// Steps in which a brush edits a layer that is no material: powers of two, of which floats represent every
+/// Steps in which a brush edits a layer of real numbers: powers of two, of which floats represent every
 /// multiple in the layer's range.
 constexpr double steps_per_unit(Layer layer) { return layer == Layer::snow_density ? 1 << 14 : 1 << 20; }
 

@@ -45,6 +45,35 @@ CommandResult Commands::apply(const Command& command, bool with_change) {
   return std::visit(Execution{*this, with_change}, command);
 }
 
+namespace {
+
+/// Plants that begin to live determine the layer vegetation, on which still ones may be painted.
+void require_no_still_plants(const SimulationState& state, const Scenario& wanted) {
+  if (state.plants || !wanted.get<VegetationParameters>().enabled || !state.terrain.has(Layer::vegetation))
+    return;
+  const std::vector<float> still = state.terrain.values(Layer::vegetation);
+  const auto cells = std::count_if(still.begin(), still.end(), [](float density) { return density > 0; });
+  if (cells > 0)
+    throw ConfigError("set_parameters: vegetation.enabled: still plants are on " + std::to_string(cells) +
+                      " cells (allowed: none; edit_terrain can set the layer vegetation to 0)");
+}
+
+/// Nothing that carries sand through the air may be there to let it fall again.
+void require_carried(const command::EditTerrain& edit, const Scenario& scenario) {
+  if (edit.layer != info(Layer::airborne_sand).name) return;
+  const std::vector<Process>& all = process_table().processes;
+  const bool carried = std::any_of(all.begin(), all.end(), [&](const Process& process) {
+    return std::count(process.writes.begin(), process.writes.end(), Layer::airborne_sand) > 0 &&
+           process_table().is_active(process, scenario);
+  });
+  if (!carried)
+    throw ConfigError(
+        "edit_terrain: layer: airborne_sand: nothing carries sand through the air here (allowed: with "
+        "saltation.enabled, and sand.model hops, desertscape_2019 or continuum)");
+}
+
+}  // namespace
+
 CommandResult Commands::Execution::operator()(const command::SetParameters& command) const {
   if (!(command.ramp >= 0 && command.ramp <= command.longest_ramp))
     throw ConfigError("set_parameters: ramp: " + std::to_string(command.ramp) + " is not in [0, 1e+12] s");
@@ -52,6 +81,7 @@ CommandResult Commands::Execution::operator()(const command::SetParameters& comm
   // Also what comes at the end of a ramp is refused now, not in the middle of the run:
   process_table().require_runnable(wanted);
   require_sea(wanted, state.terrain.scale(), "set_parameters");
+  require_no_still_plants(state, wanted);
   require_more_memory(state, wanted);
   std::vector<std::string> settings = command.settings;
   const std::vector<Ramp> before = state.ramps;
@@ -71,16 +101,21 @@ void Commands::set_parameters(const std::vector<std::string>& settings) {
                  changed = with_live_settings(present, settings);
   process_table().require_runnable(changed);
   require_sea(changed, state_.terrain.scale(), "set_parameters");
+  require_no_still_plants(state_, changed);
   require_more_memory(state_, changed);
   state_.exec().synchronise();  // memory that steps in flight work with is given back
+  const bool had_plants = static_cast<bool>(state_.plants), new_species = !same_species(before, changed);
   const ClockOrigin clock_before = state_.clock_origin;
   const bool held_were_known = state_.held_layers_known;
   state_.keep_time(changed.run, pipeline_.parts());
   state_.scenario = changed;
   try {
+    if (!had_plants || new_species) state_.take_species();
     pipeline_.prepare();
   } catch (...) {
     state_.scenario = before;
+    if (!had_plants) state_.plants = {};
+    if (had_plants && new_species) state_.take_species();
     state_.clock_origin = clock_before;
     state_.held_layers_known = held_were_known;
     pipeline_.prepare();
@@ -165,6 +200,7 @@ CommandResult Commands::Execution::operator()(const command::EditWind& command) 
 CommandResult Commands::Execution::operator()(const command::EditTerrain& command) const {
   check_stroke_name(command.stroke, "edit_terrain");
   require_still_plants(command, state.scenario);
+  require_carried(command, state.scenario);
   pipeline.ground_changed();
   TerrainEdit edit(command, state.terrain, state.scenario.grid, state.ledger());
   const bool had_layer = state.terrain.has(edit.layer());

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "src/simulation/commands/command.hpp"
+#include "src/simulation/editing/timed_commands.hpp"
 #include "src/simulation/pipeline/pipeline.hpp"
 #include "src/simulation/state/state.hpp"
 #include "src/simulation/undo/edit_history.hpp"
@@ -27,6 +28,9 @@ class Commands {
 
   EditHistory& history() { return history_; }
 
+  /// Reads the timeline of the state's scenario anew, once another has taken its place. Throws as the
+  /// constructor does.
+  void read_timeline() { timed_commands_ = read_timed_commands(state_.scenario); }
   /// Does what the timeline has until now, and changes the parameters that ramps change. What is refused
   /// changes nothing, and is an error in the log; a ramp tries again.
   void apply_timeline();

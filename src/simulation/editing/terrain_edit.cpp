@@ -66,6 +66,14 @@ TerrainEdit::TerrainEdit(const command::EditTerrain& command, Terrain& terrain, 
 void TerrainEdit::choose_layer() {
   brush_.merge = command_.merge;
   brush_.quanta_per_metre = 1.0 / step_size();
+  if (!of_material() && counted()) {
+    brush_.layer = terrain_.view().quanta(layer_);
+    brush_.depth = true;
+    brush_.lowest = 0;
+    brush_.highest = load_limit;
+    brush_.value = command_.value * brush_.quanta_per_metre;
+    return;
+  }
   if (!of_material()) {
     steps_ = Buffer<Quanta>(terrain_.exec(), static_cast<std::size_t>(brush_.grid.cells()));
     with_backend(terrain_.exec(), [&](auto& e) {
@@ -81,7 +89,8 @@ void TerrainEdit::choose_layer() {
   }
   const TerrainView view = terrain_.view();
   int other_count = 0;
-  if (layer_ != Layer::moisture)  // which lies in the pores of the column
+  if (layer_ != Layer::moisture &&
+      layer_ != Layer::airborne_sand)  // in the pores of the column, and above it
     for (const Layer layer : {Layer::bedrock, Layer::soil, Layer::sand, Layer::water})
       if (layer != layer_) brush_.other_layers[other_count++] = view.quanta(layer);
   brush_.layer = view.quanta(layer_);
@@ -96,7 +105,7 @@ void TerrainEdit::choose_layer() {
 
 /// What an integer of the brush counts [unit of the layer].
 double TerrainEdit::step_size() const {
-  return of_material() ? terrain_.scale().quantum() : 1 / steps_per_unit(layer_);
+  return counted() ? terrain_.scale().quantum() : 1 / steps_per_unit(layer_);
 }
 
 /// The shape in cells, and the rectangle of cells that bounds it.
@@ -246,7 +255,9 @@ void TerrainEdit::require_heights() const {
 
 CommandResult TerrainEdit::commit(bool with_change) {
   CommandResult result;
-  if (!of_material()) {
+  if (!of_material() && counted()) {
+    with_backend(terrain_.exec(), [&](auto& e) { brush::commit_change(e, brush_, change_.data(), true); });
+  } else if (!of_material()) {
     if (edit_kind(layer_) == EditKind::painted && !change().painted.empty()) terrain_.allocate(layer_);
     with_backend(terrain_.exec(), [&](auto& e) {
       brush::commit_steps(e, brush_, change_.data(), static_cast<float>(step_size()),
@@ -290,12 +301,15 @@ LayerEdit TerrainEdit::change() const {
   const CellList list(terrain_.exec(), cells);
   std::vector<std::uint32_t> before(cells.size(), 0);
   if (terrain_.has(layer_)) before = list.read(terrain_.data(layer_));
-  const std::vector<std::uint32_t> steps = list.read(reinterpret_cast<const std::uint32_t*>(steps_.data()));
-  for (std::size_t n = 0; n < cells.size(); ++n)
-    edit.painted.push_back({cells[n], float_from_bits(before[n]),
-                            static_cast<float>(static_cast<Quanta>(steps[n]) + edit.cells[n].amount) *
-                                static_cast<float>(step_size()),
+  const std::vector<std::uint32_t> steps =
+      counted() ? before : list.read(reinterpret_cast<const std::uint32_t*>(steps_.data()));
+  for (std::size_t n = 0; n < cells.size(); ++n) {
+    const Quanta now = static_cast<Quanta>(steps[n]) + edit.cells[n].amount;
+    edit.painted.push_back({cells[n], before[n],
+                            counted() ? static_cast<std::uint32_t>(now)
+                                      : bits_of(static_cast<float>(now) * static_cast<float>(step_size())),
                             0});
+  }
   edit.cells.clear();
   return edit;
 }

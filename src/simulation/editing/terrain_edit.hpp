@@ -38,6 +38,8 @@ class TerrainEdit {
   void conserve();
   void require_heights() const;
   bool of_material() const { return edit_kind(layer_) == EditKind::material; }
+  /// A layer of whole quanta, as of materials and humus, and not of real numbers.
+  bool counted() const { return info(layer_).storage == Storage::quanta; }
   double step_size() const;
   std::vector<float> change_of_rectangle() const;
 
@@ -46,7 +48,7 @@ class TerrainEdit {
   const GridParameters& grid_;
   Layer layer_;
   brush::Brush brush_{};
-  Buffer<Quanta> steps_;  ///< a layer of real numbers as the brush edits it; empty for materials
+  Buffer<Quanta> steps_;  ///< a layer of real numbers as the brush edits it; empty for one of quanta
   Buffer<brush::Point> vertices_;
   Buffer<float> patch_;
   Buffer<Quanta> change_;

@@ -7,7 +7,6 @@
 #include "src/core/log.hpp"
 #include "src/core/number_text.hpp"
 #include "src/simulation/editing/commands.hpp"
-#include "src/simulation/editing/timed_commands.hpp"
 
 namespace desert_sim {
 

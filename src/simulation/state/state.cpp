@@ -15,9 +15,14 @@ SimulationState::SimulationState(const Scenario& scenario_at_start, Terrain empt
     : start(scenario_at_start), scenario(scenario_at_start), terrain(std::move(empty_terrain)) {
   ledger_words = Buffer<long long>(exec(), LedgerView::words);
   ledger_words.set_zero();
+  take_species();
+}
+
+void SimulationState::take_species() {
   if (!scenario.get<VegetationParameters>().enabled) return;
   std::vector<SpeciesTraits> traits;
   for (const Species& species : scenario.species) traits.push_back(species.traits);
+  if (plants) return plants::set_species(exec(), plants, traits, scenario.competition);
   const int most = scenario.get<VegetationParameters>().max_plants;
   plants = plants::make_workspace(exec(), terrain.grid(), most > 0 ? most : terrain.grid().cells(), traits,
                                   scenario.competition);

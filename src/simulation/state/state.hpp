@@ -88,6 +88,9 @@ struct SimulationState {
   /// Layers that are in use, derived ones included.
   std::vector<Layer> layers_in_use() const;
 
+  /// Lets plants live by the scenario's species from now on; where there were none, there is room for them
+  /// then. Throws ConfigError if memory runs out.
+  void take_species();
   /// Lets another wind regime begin now; its first ramp starts from the present wind.
   void set_wind_regime(WindRegime regime);
   /// Replaces all plants; `words` are columns as plants::words() gives them. Throws ConfigError if there are

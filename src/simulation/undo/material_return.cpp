@@ -12,7 +12,7 @@ namespace {
 
 /// Those of the column, whose heights add up; and the others.
 constexpr Layer column_layers[] = {Layer::bedrock, Layer::soil, Layer::sand, Layer::water},
-                other_layers[] = {Layer::moisture};
+                other_layers[] = {Layer::moisture, Layer::airborne_sand};
 constexpr Quanta highest = wall_height - 1;
 
 std::vector<int> cells_of(const std::vector<MaterialChange>& changes) {
@@ -206,7 +206,7 @@ MaterialReturns MaterialTurn::commit() {
   if (!work_) return told;
   std::vector<long long> accounts = work_->state.read_ledger();
   for (LayerReturn& layer : work_->layers)
-    told[static_cast<std::size_t>(material_of(layer.layer()))] = layer.commit(accounts);
+    told[static_cast<std::size_t>(material_of(layer.layer()))] += layer.commit(accounts);
   work_->state.write_ledger(accounts);
   return told;
 }

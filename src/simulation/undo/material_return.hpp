@@ -14,6 +14,11 @@ namespace desert_sim {
 struct MaterialReturn {
   long long added = 0, removed = 0;  ///< sums over the cells that got some, and over those that lost some
   long long missing = 0;             ///< what cells did not have, or had no room for
+
+  MaterialReturn& operator+=(const MaterialReturn& other) {
+    added += other.added, removed += other.removed, missing += other.missing;
+    return *this;
+  }
 };
 using MaterialReturns = std::array<MaterialReturn, material_count>;
 

@@ -29,6 +29,12 @@ std::vector<PaintedCell*> newer(std::deque<Stroke>& strokes, const Stroke& strok
   return above;
 }
 
+float value_of(std::uint32_t word, Layer layer, const Terrain& terrain) {
+  return info(layer).storage == Storage::quanta
+             ? static_cast<float>(static_cast<Quanta>(word) * terrain.scale().quantum())
+             : float_from_bits(word);
+}
+
 }  // namespace
 
 void paint(std::deque<Stroke>& strokes, Stroke& stroke, Layer layer, const std::vector<PaintedCell>& cells) {
@@ -65,17 +71,17 @@ std::vector<float> turn(std::deque<Stroke>& strokes, const Stroke& stroke, Paint
   std::vector<float> changes(cells.size(), 0.0f);
   for (std::size_t n = 0; n < cells.size(); ++n) {
     PaintedCell& own = cells[n];
-    const float present = float_from_bits(words[n]);
+    const std::uint32_t present = words[n];
     if (stroke.undone)
       own.before = above[n] ? above[n]->before : present;
     else if (!above[n])
       own.after = present;
-    const float value = stroke.undone ? own.after : own.before;
+    const std::uint32_t word = stroke.undone ? own.after : own.before;
     if (above[n]) {
-      above[n]->before = value;
+      above[n]->before = word;
     } else {
-      changes[n] = value - present;
-      words[n] = bits_of(value);
+      changes[n] = value_of(word, layer.layer, terrain) - value_of(present, layer.layer, terrain);
+      words[n] = word;
     }
   }
   list.write(terrain.data(layer.layer), words);

@@ -45,7 +45,7 @@ void Population::forget() {
 }
 
 std::size_t Population::bytes() const {
-  return ranks_.size() * sizeof(std::uint64_t) + kept_covers_ * 2 * sizeof(std::uint32_t);
+  return ranks_.size() * sizeof(std::uint64_t) + kept_covers_ * sizeof(std::uint32_t);
 }
 
 PlantWords Population::plant_at(std::size_t place) const {

@@ -6,10 +6,10 @@
 /// that are there before the first change after a step are numbered in their order, and plants that are put
 /// later get the next numbers. Ranks are never used again, and end with the step.
 ///
-/// Plants also leave their trace in vegetation and humus, which a step computes from the plants as they are
-/// in the middle of it, so that they cannot be computed anew afterwards. Therefore what each block of 8 × 8
-/// cells had is kept for every set of plants around it that there was since the last step. A set is known by
-/// a sum of numbers (marks): one for each plant that was put or taken away.
+/// Plants also make vegetation, which a step computes from the plants as they are in the middle of it, so
+/// that it cannot be computed anew afterwards. Therefore what each block of 8 × 8 cells had is kept for every
+/// set of plants around it that there was since the last step. A set is known by a sum of numbers (marks):
+/// one for each plant that was put or taken away.
 
 #include <array>
 #include <cstdint>
@@ -52,7 +52,7 @@ class Population {
   /// What a block of cells had with one set of plants.
   struct Cover {
     std::uint64_t marks;
-    std::vector<std::uint32_t> vegetation, humus;
+    std::vector<std::uint32_t> vegetation;
   };
   struct Block {
     std::uint64_t marks = 0;
@@ -65,12 +65,13 @@ class Population {
 
   void begin();
   Found find(const std::vector<ChangedPlant>& wanted) const;
-  /// What an update of vegetation and humus needs, made before the plants are changed.
+  /// What an update of vegetation needs, made before the plants are changed.
   struct CoverUpdate {
     std::vector<int> blocks;           ///< that a changed plant reaches
     std::vector<std::uint64_t> marks;  ///< of all blocks: the sum over the changed plants that reach it
     CellList cells;                    ///< of `blocks`, one after the other
-    Buffer<std::uint32_t> vegetation, humus;
+    Buffer<std::uint32_t> vegetation;
+    Buffer<std::uint32_t> humus;  ///< which no time passes for: what is computed of it is not used
   };
   void replace(const std::vector<std::uint32_t>& removed, const std::vector<ChangedPlant>& added);
   CoverUpdate begin_cover(const std::vector<ChangedPlant>& changed) const;

@@ -1,4 +1,4 @@
-/// Population: vegetation and humus.
+/// Population: vegetation.
 #include <algorithm>
 #include <cmath>
 
@@ -84,7 +84,7 @@ Population::CoverUpdate Population::begin_cover(const std::vector<ChangedPlant>&
   return update;
 }
 
-/// What vegetation and humus come to with the present plants.
+/// What vegetation comes to with the present plants.
 Population::Cover Population::compute_cover(CoverUpdate& update) {
   const Terrain& terrain = state_.terrain;
   state_.exec().copy(update.humus.data(), terrain.data(Layer::humus), update.humus.bytes());
@@ -98,10 +98,10 @@ Population::Cover Population::compute_cover(CoverUpdate& update) {
                   state_.plants);
   });
   pipeline_.derived_changed();
-  return {0, update.cells.read(update.vegetation.data()), update.cells.read(update.humus.data())};
+  return {0, update.cells.read(update.vegetation.data())};
 }
 
-/// Brings vegetation and humus up to date in the blocks that the changed plants reach, so that who looks
+/// Brings vegetation up to date in the blocks that the changed plants reach, so that who looks
 /// before the next step sees them. `recall`: where a block has had this set of plants before, it gets what it
 /// had then.
 void Population::update_cover(CoverUpdate& update, bool recall, bool remembers) {
@@ -110,8 +110,7 @@ void Population::update_cover(CoverUpdate& update, bool recall, bool remembers) 
   const CellList& cells = update.cells;
   Cover cover = compute_cover(update);
   if (remembers) {
-    const Cover before{0, cells.read(terrain.data(Layer::vegetation)),
-                       cells.read(terrain.data(Layer::humus))};
+    const Cover before{0, cells.read(terrain.data(Layer::vegetation))};
     std::size_t first = 0;
     for (const int block : update.blocks) {
       const std::size_t size = cells_of(block).size();
@@ -121,7 +120,6 @@ void Population::update_cover(CoverUpdate& update, bool recall, bool remembers) 
     }
   }
   cells.write(terrain.data(Layer::vegetation), cover.vegetation);
-  cells.write(terrain.data(Layer::humus), cover.humus);
 }
 
 /// Keeps the part `cells` of `now` for the block, whose plants have changed by `marks`, or, with `recall`,
@@ -131,12 +129,10 @@ void Population::keep_cover(Block& block, std::uint64_t marks, std::pair<std::si
   const auto begin = static_cast<std::ptrdiff_t>(cells.first),
              end = static_cast<std::ptrdiff_t>(cells.second);
   const auto part = [&](const Cover& from, std::uint64_t of) {
-    return Cover{of,
-                 {from.vegetation.begin() + begin, from.vegetation.begin() + end},
-                 {from.humus.begin() + begin, from.humus.begin() + end}};
+    return Cover{of, {from.vegetation.begin() + begin, from.vegetation.begin() + end}};
   };
   const auto keep = [&](Cover cover) {
-    kept_covers_ += cover.humus.size();
+    kept_covers_ += cover.vegetation.size();
     block.covers.push_back(std::move(cover));
   };
   if (block.covers.empty()) keep(part(before, 0));
@@ -147,7 +143,6 @@ void Population::keep_cover(Block& block, std::uint64_t marks, std::pair<std::si
     keep(part(now, block.marks));
   } else if (recall) {
     std::copy(known->vegetation.begin(), known->vegetation.end(), now.vegetation.begin() + begin);
-    std::copy(known->humus.begin(), known->humus.end(), now.humus.begin() + begin);
   } else {
     *known = part(now, block.marks);
   }

@@ -13,6 +13,7 @@ Material material_of(Layer layer) {
     case Layer::soil:
       return Material::soil;
     case Layer::sand:
+    case Layer::airborne_sand:
       return Material::sand;
     case Layer::water:
       return Material::water;

@@ -35,8 +35,8 @@ Material material_of(Layer layer);
 /// the cell is, and its `before` is what it would be without that stroke.
 struct PaintedCell {
   int cell;
-  float before, after;
-  std::uint64_t order;  ///< grows with each edit
+  std::uint32_t before, after;  ///< as the layer stores them
+  std::uint64_t order;          ///< grows with each edit
 };
 
 struct PaintedLayer {

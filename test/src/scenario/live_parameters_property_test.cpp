@@ -48,7 +48,7 @@ std::vector<std::string> all_changes(const Scenario& scenario) {
   std::vector<std::string> changes;
   for_each_live_parameter(scenario, [&](const std::string& section, const auto& row, const auto& value) {
     const std::string path = section + "." + row.name;
-    if (path == "wind.regime") return;  // needs segments
+    if (path == "wind.regime" || path == "vegetation.enabled") return;  // need segments, species
     changes.push_back(path + "=" + other_value(row, value));
   });
   return changes;

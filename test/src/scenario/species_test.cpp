@@ -97,12 +97,19 @@ TEST(SpeciesList, VegetationIsEitherPaintedOrGrown) {
                  {"terrain.0.uniform.layer", "vegetation"});
 }
 
-TEST(SpeciesList, DoesNotChangeWhileItRuns) {
+TEST(SpeciesList, KeepsItsPlantsWhileItRuns) {
   const Scenario s = test::scenario_of("vegetation: {enabled: true}\nspecies: [{preset: bush}]\n");
-  for (const char* setting : {"vegetation.enabled=false", "vegetation.max_plants=9", "species.0.growth=1"})
+  for (const char* setting : {"vegetation.enabled=false", "vegetation.max_plants=9", "species.0.groth=1",
+                              "species=[]", "species.0.name=shrub", "species.0={preset: tree}"})
     EXPECT_THROW(with_live_settings(s, {setting}), ConfigError) << setting;
   EXPECT_EQ(with_live_settings(s, {"vegetation.draw=0.5"}).get<VegetationParameters>().draw, 0.5f);
   EXPECT_EQ(with_live_settings(s, {"vegetation.draw=0.5"}).species.size(), 1u);
+  const Scenario more = with_live_settings(s, {"species.0.stem=0.5", "species.1={preset: tree}"});
+  ASSERT_EQ(more.species.size(), 2u);
+  EXPECT_EQ(more.species[0].traits.stem, 0.5f);
+  EXPECT_EQ(more.competition, CompetitionMatrix({1, 1, 1, 1}));
+  const Scenario changed = with_live_settings(more, {"competition.0.1=3", "species.2={preset: palm}"});
+  EXPECT_EQ(changed.competition, CompetitionMatrix({1, 3, 1, 1, 1, 1, 1, 1, 1}));
 }
 
 }  // namespace

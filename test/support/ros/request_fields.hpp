@@ -60,6 +60,7 @@ inline std::vector<RequestField<desert_sim::EditTerrainRequest>> fields_of(
           request_field("smooth_passes", &R::smooth_passes, 2),
           request_field("ring_width", &R::ring_width, 2.0),
           request_field("image", &R::image, white_pixel()),
+          request_field("image_file", &R::image_file, std::string("stamp.asc")),
           request_field("image_use", &R::image_use, std::string("heights")),
           request_field("image_scale", &R::image_scale, 1.0)};
 }

@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <filesystem>
+#include <fstream>
 #include <numeric>
 
 #include "test/support/ros/service_tests.hpp"
@@ -100,6 +102,38 @@ TEST_F(Edits, APolygonAndACapsuleLieWhereTheirPointsAre) {
   EXPECT_NEAR(edit(request).volume, std::hypot(50, 20) * 8 + 3.14159 * 16, 40);
   EXPECT_NEAR(sand(55, 40), 1.5, 1e-5);
   EXPECT_NEAR(sand(80, 30), 0.5, 1e-5);
+}
+
+TEST_F(Edits, ARasterIsAPatch) {
+  std::string folder;
+  ASSERT_TRUE(ros::param::get("/desert_sim/data_dir", folder));
+  std::filesystem::create_directories(folder);
+  std::ofstream(folder + "/stamp.asc")
+      << "ncols 2\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 3\n25 0\n0 5\n";
+  EditTerrain::Request request = a_patch();
+  request.image = {};
+  request.image_file = "stamp.asc";
+  request.image_scale = 0.2;
+  edit(request);
+  EXPECT_NEAR(sand(43, 37), 5.5, 1e-4) << "25 in the north-west";
+  EXPECT_NEAR(sand(57, 23), 1.5, 1e-4);
+  EXPECT_NEAR(sand(57, 37), 0.5, 1e-4);
+  ASSERT_TRUE(call<std_srvs::Trigger>("reset").success);
+  request.image_use = "mask";
+  request.image_scale = 0;
+  request.value = 5;
+  edit(request);
+  EXPECT_NEAR(sand(43, 37), 5.5, 1e-4) << "1 at the highest";
+  EXPECT_NEAR(sand(57, 23), 1.5, 1e-4);
+  ASSERT_TRUE(call<std_srvs::Trigger>("reset").success);
+  request.image_file = "../stamp.asc";
+  expect_refused<EditTerrain>("edit_terrain", request, "../stamp.asc", "~data_dir");
+  request.image_file = "stamp.asc";
+  request.image = an_image("mono8", 2, 2, 1);
+  expect_refused<EditTerrain>("edit_terrain", request, "image_file: is set", "image is given");
+  request = a_shape("circle");
+  request.image_file = "stamp.asc";
+  expect_refused<EditTerrain>("edit_terrain", request, "image_file", "does not use it");
 }
 
 TEST_F(Edits, APatchIsAPictureSeenFromAbove) {
@@ -405,4 +439,9 @@ TEST_F(Edits, RefusesImagesThatDoNotFit) {
 
 }  // namespace
 
-int main(int argc, char** argv) { return node_test::run_tests(argc, argv, "edits"); }
+int main(int argc, char** argv) {
+  const int status = node_test::run_tests(argc, argv, "edits");
+  std::string folder;
+  if (ros::param::get("/desert_sim/data_dir", folder)) std::filesystem::remove_all(folder);
+  return status;
+}

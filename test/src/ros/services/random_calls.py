@@ -74,7 +74,7 @@ class Caller:
 
     def __init__(self, node, draw, folder):
         self.node, self.draw, self.random, self.folder = node, draw, RandomMessages(draw), folder
-        self.checkpoints, self.terrains, self.saved = ["none.ckpt"], ["none"], 0
+        self.checkpoints, self.terrains, self.scenarios, self.saved = ["none.ckpt"], ["none"], [], 0
         self.accepted, self.refused, self.log = {}, {}, []
         self.winds, self.on_its_way = 0, False
         self.publishers = {topic: rospy.Publisher(topic, kind, queue_size=10, latch=False) for topic, kind in TOPICS.items()}
@@ -104,12 +104,23 @@ class Caller:
         if service == "set_parameters":
             request.config = self.config(request.config)
         elif service == "load_scenario":
-            request.name = self.draw.choice([*SCENARIOS, "none.yaml"])
+            request.name = self.draw.choice([*SCENARIOS, *self.scenarios, "none.yaml"])
+            request.settings = self.settings()
+        elif service == "apply_settings":
+            request.settings = self.draw.sample(
+                ["saltation.lift=0.7", "species.0.max_radius=0.8", "species.1.spawn=9", "species.0.stem=-1", "species=[]",
+                 "species.2={preset: palm}", "vegetation.enabled=true", "grid.width=9"], self.draw.choice([1, 1, 2]))
+            request.ramp = self.draw.choice([0, 0, 5, -1])
+        elif service == "new_scenario":
+            request.yaml = self.draw.choice(["grid: {width: 17, height: 12}\nterrain: [noise: {layer: sand, high: 2}]\n",
+                                             "# \"a comment\"\nterrain:\n  - uniform: {layer: sand, value: 1}\n", "terrain: {"])
+            request.settings = ["grid.height=14", "grid.width=18", *self.settings()]
+            request.name = self.draw.choice(["", "text", "../text"])
         elif service == "load_checkpoint":
             request.name = self.draw.choice(self.checkpoints)
         elif service == "load_terrain":
             request.name = self.draw.choice(self.terrains)
-        elif service in ("save_checkpoint", "save_terrain"):
+        elif service in ("save_checkpoint", "save_scenario", "save_terrain"):
             request.name = self.draw.choice([self.new_name()] * 8 + ["..", "/tmp/x", "none.ckpt/x"])
         elif service in ("edit_terrain", "edit_plants"):
             count = {"capsule": 2, "polygon": self.draw.randrange(3, 6)}.get(request.shape, 0)
@@ -117,6 +128,10 @@ class Caller:
         elif service == "reload_parameters":
             rospy.set_param("/%s/wind" % NODE, {"speed": self.draw.choice([3.0, 5.5, -1.0])})
         return request
+
+    def settings(self):
+        return self.draw.sample(["wind.speed=7.25", "saltation.lift=0.5", "wind.direction_deg=-400", "run.steps=12", "salt=1"],
+                                self.draw.choice([0, 0, 0, 1, 2]))
 
     def config(self, config):
         """Some parameters at or between their limits."""
@@ -182,6 +197,8 @@ class Caller:
         count[service] = count.get(service, 0) + 1
         if accepted and service == "save_checkpoint":
             self.checkpoints.append(request.name)
+        if accepted and service == "save_scenario":
+            self.scenarios.append(request.name)
         if accepted and service == "save_terrain":
             self.terrains.append(request.name)
 
@@ -257,9 +274,10 @@ class RandomCalls(Scenarios):
 
     def without_generator(self, caller):
         """Services whose requests would be filled with words that mean nothing."""
-        known = {"edit_plants", "edit_terrain", "edit_wind", "get_grid_map", "get_submap", "load_checkpoint", "load_scenario",
-                 "load_terrain", "pause", "query_terrain", "redo", "reload_parameters", "reset", "resume", "save_checkpoint",
-                 "save_terrain", "set_parameters", "set_weather", "set_wind", "set_wind_schedule", "step", "undo"}
+        known = {"apply_settings", "edit_plants", "edit_terrain", "edit_wind", "get_grid_map", "get_scenario", "get_submap",
+                 "load_checkpoint", "load_scenario", "load_terrain", "new_scenario", "pause", "query_terrain", "redo",
+                 "reload_parameters", "reset", "resume", "save_checkpoint", "save_scenario", "save_terrain",
+                 "set_parameters", "set_weather", "set_wind", "set_wind_schedule", "step", "undo"}
         return known.symmetric_difference(caller.services)
 
     def test_what_is_accepted_can_be_repeated(self):

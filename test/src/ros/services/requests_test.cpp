@@ -15,6 +15,7 @@ using namespace desert_sim;
 using node_test::fields_of;
 
 const TerrainTransforms frames("map");
+const DataFolder files("/no/folder");
 
 /// Sets each field in turn: it is refused by its name if it is not one of those that are used.
 template <class Request, class Make>
@@ -72,15 +73,15 @@ TEST(Requests, EditTerrainRefusesWhatItsShapeDoesNotUse) {
       EditTerrainRequest set = request;
       field.set(set);
       if (used.count(field.name))
-        EXPECT_NO_THROW(edit_command(set, frames)) << shape << ", " << field.name;
+        EXPECT_NO_THROW(edit_command(set, frames, files)) << shape << ", " << field.name;
       else
-        EXPECT_THROW(edit_command(set, frames), ConfigError) << shape << ", " << field.name;
+        EXPECT_THROW(edit_command(set, frames, files), ConfigError) << shape << ", " << field.name;
     }
   }
 }
 
 TEST(Requests, EditTerrainRefusesWhatMergeConserveAndImageDoNotUse) {
-  const auto make = [](const EditTerrainRequest& request) { return edit_command(request, frames); };
+  const auto make = [](const EditTerrainRequest& request) { return edit_command(request, frames, files); };
   EditTerrainRequest request;
   request.layer = "sand";
   request.shape = "circle";
@@ -123,7 +124,7 @@ TEST(Requests, TheRefusalNamesFieldAndShape) {
   request.radius = 2;
   request.points = {node_test::point_at(20, 20)};
   try {
-    edit_command(request, frames);
+    edit_command(request, frames, files);
     FAIL() << "a circle at (0, 0)";
   } catch (const ConfigError& error) {
     EXPECT_STREQ(error.what(), "points: is set, but shape 'circle' does not use it (allowed: leave it out)");

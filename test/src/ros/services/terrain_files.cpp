@@ -2,6 +2,8 @@
 #include <desert_sim/ElevationGrid.h>
 #include <desert_sim/LoadScenario.h>
 #include <desert_sim/LoadTerrain.h>
+#include <desert_sim/NewScenario.h>
+#include <desert_sim/SaveScenario.h>
 #include <desert_sim/SaveTerrain.h>
 #include <desert_sim/SimulationStatus.h>
 #include <std_srvs/Trigger.h>
@@ -131,6 +133,78 @@ TEST_F(TerrainFiles, InstalledScenariosHaveNames) {
   expect_refused<LoadScenario>("load_scenario", beginning("nebka"), "did you mean 'nebkha'?", "barchan, ");
   write("mine", "grid: {width: 9, height: 7}\n");
   EXPECT_TRUE(call<LoadScenario>("load_scenario", beginning("mine")).success) << "a file below ~data_dir";
+}
+
+TEST_F(TerrainFiles, AScenarioIsSavedWholeAndGoesOn) {
+  step(4);
+  SaveScenario::Request save;
+  save.name = "kept/as it is";
+  const auto saved = call<SaveScenario>("save_scenario", save);
+  ASSERT_TRUE(saved.success) << saved.message;
+  EXPECT_EQ(saved.path, folder_ + "/kept/as it is/scenario.yaml");
+  EXPECT_EQ(saved.step, 4u);
+  EXPECT_EQ(saved.state_hash, hash());
+  step(3);
+  const std::string later = hash();
+  ASSERT_NE(later, saved.state_hash);
+  for (const char* name : {"kept/as it is", "kept/as it is/scenario.yaml"}) {
+    const auto loaded = call<LoadScenario>("load_scenario", beginning(name));
+    ASSERT_TRUE(loaded.success) << loaded.message;
+    EXPECT_EQ(loaded.state_hash, saved.state_hash);
+    step(3);
+    EXPECT_EQ(hash(), later) << "it goes on with the same bits";
+  }
+  EXPECT_TRUE(call<std_srvs::Trigger>("reset").success);
+  EXPECT_EQ(hash(), saved.state_hash) << "a reset goes back to what was saved";
+  for (const char* name : {"", "/tmp/a", "../a"}) {
+    save.name = name;
+    expect_refused<SaveScenario>("save_scenario", save, "/scenario.yaml'", "~data_dir");
+  }
+  write("beyond/scenario.yaml", "run: {start_from: /etc/passwd}\n");
+  expect_refused<LoadScenario>("load_scenario", beginning("beyond"), "/etc/passwd", "");
+  expect_refused<LoadScenario>("load_scenario", beginning("kept"), "'kept/scenario.yaml'", "no such file");
+}
+
+TEST_F(TerrainFiles, AScenarioTakesSettings) {
+  Listener<ElevationGrid> keyframes("elevation");
+  LoadScenario::Request request = beginning("nebkha");
+  request.settings = {"grid.width=40", "grid.height=32", "grid.cell_size=0.5", "seed=7"};
+  const auto loaded = call<LoadScenario>("load_scenario", request);
+  ASSERT_TRUE(loaded.success) << loaded.message;
+  EXPECT_TRUE(wait_until([&] { return keyframes.last().width == 40 && keyframes.last().height == 32; }));
+  EXPECT_EQ(keyframes.last().cell_size, 0.5);
+  request.settings = {"grid.width=0", "sand.model=dust", "grid"};
+  expect_refused<LoadScenario>("load_scenario", request, "setting 'grid'", "path=value");
+  request.settings.pop_back();
+  expect_refused<LoadScenario>("load_scenario", request, "grid.width", "sand.model");
+  EXPECT_EQ(hash(), loaded.state_hash) << "what is refused changes nothing";
+}
+
+TEST_F(TerrainFiles, AScenarioBeginsFromAText) {
+  Listener<SimulationStatus> statuses("status");
+  NewScenario::Request request;
+  request.yaml = "grid: {width: 24, height: 18}\nterrain: [noise: {layer: sand, high: 2}]\n";
+  request.settings = {"terrain.0.noise.high=3"};
+  const auto begun = call<NewScenario>("new_scenario", request);
+  ASSERT_TRUE(begun.success) << begun.message;
+  EXPECT_EQ(begun.state_hash, hash());
+  EXPECT_TRUE(wait_until([&] { return statuses.last().scenario == "new"; }));
+  step(2);
+  EXPECT_TRUE(call<std_srvs::Trigger>("reset").success);
+  EXPECT_EQ(begun.state_hash, hash());
+  request.name = "plain";
+  request.settings.clear();
+  EXPECT_NE(call<NewScenario>("new_scenario", request).state_hash, begun.state_hash);
+  EXPECT_TRUE(wait_until([&] { return statuses.last().scenario == "plain"; }));
+  request.name = "a/b";
+  expect_refused<NewScenario>("new_scenario", request, "name: 'a/b'", "");
+  request.name = "wrong";
+  request.yaml = "grid: {width: -24}\nterain: []\n";
+  expect_refused<NewScenario>("new_scenario", request, "grid.width: -24", "did you mean");
+  request.yaml = "terrain: [raster: {layer: sand, file: /etc/passwd}]\n";
+  expect_refused<NewScenario>("new_scenario", request, "/etc/passwd", "is not below");
+  request.yaml.clear();
+  expect_refused<NewScenario>("new_scenario", request, "yaml: is empty", "");
 }
 
 TEST_F(TerrainFiles, ReadNoFormatThatNamesOtherFiles) {

@@ -346,6 +346,79 @@ TEST_P(Edits, OfNumbersKeepToTheRangeOfTheirLayer) {
   EXPECT_NE(test::refusal(*meadow, edit).find("with sand.model snow"), std::string::npos);
 }
 
+/// Counted in quanta, but in no account: plants make it, and soil uses it up.
+TEST_P(Edits, OfHumusAreUndoneBetweenThoseOfPlants) {
+  const auto s = simulation(
+      "grid: {width: 24, height: 20}\nterrain: [uniform: {layer: soil, value: 2}]\n"
+      "vegetation: {enabled: true}\nspecies: [{preset: bush, spawn: 0}]\n");
+  s->commands().history().set_memory(default_undo_memory);
+  test::run(*s, 2);
+  EditTerrain humus;
+  humus.layer = "humus", humus.merge = BrushMerge::replace;
+  humus.x = 12, humus.y = 10, humus.radius = 6, humus.inner = 1, humus.value = 0.05;
+  command::EditPlants bush;
+  bush.species = "bush";
+  bush.x = 12, bush.y = 10, bush.radius = 5, bush.density = 0.5, bush.size = 0.3;
+  std::vector<std::uint64_t> hashes{s->state().hash()};
+  const auto note = [&](const Command& c) {
+    s->apply(c);
+    hashes.push_back(s->state().hash());
+    EXPECT_NE(hashes.back(), hashes[hashes.size() - 2]);
+  };
+  note(bush);
+  note(humus);
+  const float quantum = s->terrain().scale().quantum();
+  EXPECT_NEAR(s->terrain().values(Layer::humus).at(10 * 24 + 12), 0.05, quantum);
+  bush.seed = 4;
+  note(bush);
+  humus.x = 15, humus.value = 0.02;
+  note(humus);
+  for (std::size_t n = hashes.size() - 1; n-- > 0;) {
+    s->apply(command::Undo{});
+    EXPECT_EQ(s->state().hash(), hashes[n]) << n;
+  }
+  for (std::size_t n = 1; n < hashes.size(); ++n) {
+    s->apply(command::Redo{});
+    EXPECT_EQ(s->state().hash(), hashes[n]) << n;
+  }
+  test::run(*s, 2);
+  test::expect_sound(*s, "with humus painted");
+  humus.conserve = true;
+  EXPECT_NE(test::refusal(*s, humus).find("humus is no material"), std::string::npos);
+}
+
+TEST_P(Edits, OfSandInTheAirAreSandAndFall) {
+  const auto s = simulation("grid: {width: 24, height: 20}\nterrain: [uniform: {layer: sand, value: 1}]\n");
+  s->commands().history().set_memory(default_undo_memory);
+  const std::uint64_t start = s->state().hash();
+  const auto sand = [&] { return s->state().balance()[static_cast<int>(Material::sand)]; };
+  const double before = sand().final_m3();
+  EditTerrain air;
+  air.layer = "airborne_sand";
+  air.x = 12, air.y = 10, air.radius = 4, air.inner = 1, air.value = 0.5;
+  const CommandResult result = s->apply(air, true);
+  EXPECT_NEAR(result.volume_m3, sand().final_m3() - before, 1e-9);
+  EXPECT_GT(result.volume_m3, 20);
+  EXPECT_EQ(sand().residual(), 0);
+  EditTerrain ground = air;
+  ground.layer = "sand", ground.stroke = air.stroke = "both";
+  s->apply(ground);
+  s->apply(air);
+  const CommandResult undone = s->apply(command::Undo{"both"});
+  EXPECT_NEAR(undone.returned.materials[static_cast<int>(Material::sand)]->removed_m3, 2 * result.volume_m3,
+              1e-6)
+      << "of both layers";
+  s->apply(command::Undo{});
+  EXPECT_EQ(s->state().hash(), start);
+  s->apply(command::Redo{});
+  s->apply(command::SetWind{0, 0, 0});
+  test::run(*s, 10);
+  test::expect_sound(*s, "after it fell");
+  EXPECT_GT(s->terrain().values(Layer::sand).at(10 * 24 + 12), 1.3f) << "it has come down";
+  const auto slabs = simulation("grid: {width: 24, height: 20}\nsand: {model: werner}\n");
+  EXPECT_NE(test::refusal(*slabs, air).find("nothing carries sand through the air"), std::string::npos);
+}
+
 TEST_P(Edits, OfVegetationAreRefusedWherePlantsLive) {
   const auto s =
       simulation(test::edit_world("open") + "vegetation: {enabled: true}\nspecies: [{preset: bush}]\n");

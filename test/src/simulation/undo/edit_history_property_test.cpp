@@ -74,7 +74,7 @@ TEST_P(UndoIn, TheOrderOfEditsBringsEveryStateBack) {
 TEST_P(UndoIn, AnyOrderBringsTheStartBackIfNothingWasMissing) {
   int exact = 0, inexact = 0;
   for (const char* world : test::undo_worlds)
-    for (unsigned seed = 0; seed < 24; ++seed) {
+    for (unsigned seed = 0; seed < 32; ++seed) {
       SCOPED_TRACE(std::string(world) + ", seed " + std::to_string(seed));
       auto s = session(world);
       test::RandomStrokes random(s->simulation(), seed);
@@ -111,14 +111,16 @@ TEST_P(UndoIn, AnyOrderBringsTheStartBackIfNothingWasMissing) {
   EXPECT_GT(inexact, 3);
 }
 
-/// The layers of material as they are, in quanta.
+/// The materials as they are, in quanta.
 std::array<long long, 4> sums(const Simulation& s) {
   std::array<long long, 4> all{};
-  const Layer layers[] = {Layer::bedrock, Layer::soil, Layer::sand, Layer::water};
-  for (std::size_t n = 0; n < all.size(); ++n) {
-    const auto values = test::quanta(s, layers[n]);
-    all[n] = std::accumulate(values.begin(), values.end(), 0LL);
-  }
+  const std::vector<Layer> layers[] = {
+      {Layer::bedrock}, {Layer::soil}, {Layer::sand, Layer::airborne_sand}, {Layer::water}};
+  for (std::size_t n = 0; n < all.size(); ++n)
+    for (const Layer layer : layers[n]) {
+      const auto values = test::quanta(s, layer);
+      all[n] += std::accumulate(values.begin(), values.end(), 0LL);
+    }
   return all;
 }
 
