@@ -24,8 +24,10 @@ constexpr MaterialRow materials[] = {
     {"Water", "water", true, true},
     {"Moisture", "moisture", true, true},
     {"Plants", "plants", false, false},
+    {"Airborne Sand", "airborne_sand", false, true},
     {"Vegetation", "vegetation", true, true},
     {"Erosion Resistance", "erosion_resistance", false, true},
+    {"Humus", "humus", false, true},
     {"Grass", "grass", false, true},
     {"Mesquite", "mesquite", false, true},
     {"Shrub", "shrub", false, true},
@@ -38,7 +40,7 @@ const MaterialRow& row(Material material) { return materials[static_cast<int>(ma
 /// How much a pass can change a layer that has no depth or elevation [unit of the layer]; 0: it has one.
 double width_of_range(Material material) {
   const EditedLayer* const edited = find_edited_layer(layer_of(material));  // plants are none
-  if (!edited || edited->kind == EditKind::material) return 0;
+  if (!edited || info(edited->layer).storage == Storage::quanta) return 0;
   return info(edited->layer).highest - info(edited->layer).lowest;
 }
 

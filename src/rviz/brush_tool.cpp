@@ -1,6 +1,8 @@
 #include "src/rviz/brush_tool.hpp"
 
+#include <desert_sim/GetScenario.h>
 #include <rviz/display_context.h>
+#include <rviz/properties/editable_enum_property.h>
 #include <rviz/properties/enum_property.h>
 #include <rviz/properties/float_property.h>
 #include <rviz/properties/string_property.h>
@@ -8,10 +10,14 @@
 #include <rviz/view_controller.h>
 #include <rviz/view_manager.h>
 #include <rviz/viewport_mouse_event.h>
+#include <yaml-cpp/yaml.h>
 
 #include <QKeyEvent>
 #include <cmath>
 #include <pluginlib/class_list_macros.hpp>
+
+#include "src/core/error.hpp"
+#include "src/rviz/names.hpp"
 
 namespace desert_sim {
 
@@ -59,8 +65,9 @@ BrushTool::BrushTool() {
              parent);
   inner_ = number("Inner Fraction", 0.5f, 0, 1,
                   "Full strength up to this fraction of the radius, from where it falls to 0.", parent);
-  species_ = new rviz::StringProperty(
-      "Species", "", "Of plants: what is planted, or removed (empty: all). A name in the scenario.", parent);
+  species_ = new rviz::EditableEnumProperty(
+      "Species", "", "Of plants: what is planted, or removed (empty: all); the node's species are listed.",
+      parent);
   density_ = number("Plant Density", 0.1f, 1e-4f, 1000,
                     "Plants that one pass puts on a square metre; Ctrl and the wheel change it.", parent);
   size_ = number("Plant Size", 0.5f, 0.001f, 1,
@@ -82,7 +89,27 @@ void BrushTool::choose_node() {
   if (context_->getToolManager()->getCurrentTool() == this) terrain_->follow(node_->getStdString());
 }
 
-void BrushTool::activate() { terrain_->follow(node_->getStdString()); }
+void BrushTool::activate() {
+  terrain_->follow(node_->getStdString());
+  ask_for_species();
+}
+
+void BrushTool::ask_for_species() {
+  std::string service;
+  try {
+    service = full_name(node_->getStdString(), "node") + "/get_scenario";
+  } catch (const ConfigError&) {
+    return;  // the client tells it
+  }
+  caller_.call<GetScenario>(service, {},
+                            [this](const CallOutcome& outcome, const GetScenarioResponse& answer) {
+                              if (!outcome.success) return;  // there is no node yet; a stroke would say so
+                              species_->clearOptions();
+                              species_->addOption("");
+                              for (const YAML::Node& species : YAML::Load(answer.yaml)["species"])
+                                species_->addOptionStd(species["name"].as<std::string>());
+                            });
+}
 
 void BrushTool::deactivate() {
   release();

@@ -8,10 +8,12 @@
 #include <string>
 
 #include "src/rviz/edit_client.hpp"
+#include "src/rviz/service_caller.hpp"
 #include "src/rviz/surface_marks.hpp"
 #include "src/rviz/terrain_picker.hpp"
 
 namespace rviz {
+class EditableEnumProperty;
 class EnumProperty;
 class FloatProperty;
 class StringProperty;
@@ -56,11 +58,16 @@ class BrushTool : public rviz::Tool {
   void draw();
   void show_status();
 
-  rviz::StringProperty *node_, *species_;
+  /// Asks the node for the names of its species.
+  void ask_for_species();
+
+  rviz::StringProperty* node_;
+  rviz::EditableEnumProperty* species_;
   rviz::EnumProperty *material_, *operation_;
   rviz::FloatProperty *radius_, *strength_, *inner_, *density_, *size_;
 
   std::unique_ptr<EditClient> client_;
+  ServiceCaller caller_;  ///< for questions, which strokes do not wait for
   std::unique_ptr<TerrainPicker> terrain_;
   std::unique_ptr<SurfaceMarks> marks_;
   std::optional<render::Point> hovered_;  ///< what the mouse points at

@@ -4,6 +4,7 @@
 #include <desert_sim/LoadScenario.h>
 #include <desert_sim/LoadTerrain.h>
 #include <desert_sim/SaveCheckpoint.h>
+#include <desert_sim/SaveScenario.h>
 #include <desert_sim/SaveTerrain.h>
 
 #include <QComboBox>
@@ -13,6 +14,7 @@
 #include <QVBoxLayout>
 
 #include "src/rviz/fields.hpp"
+#include "src/rviz/new_scene_form.hpp"
 
 namespace desert_sim {
 
@@ -62,6 +64,7 @@ FilesForm::FilesForm(NodeLink& link, QWidget* parent) : QWidget(parent), link_(l
   all->addWidget(make_scenario());
   all->addWidget(make_terrain());
   all->addWidget(make_checkpoint());
+  all->addWidget(new NewSceneForm(link));
   auto* const again =
       button("refresh", "Look for files again", "List what config/scenarios and ~data_dir have now");
   all->addWidget(again, 0, Qt::AlignLeft);
@@ -70,11 +73,21 @@ FilesForm::FilesForm(NodeLink& link, QWidget* parent) : QWidget(parent), link_(l
 }
 
 QGroupBox* FilesForm::make_scenario() {
-  scenario_ = name_field("scenario", "An installed scenario, or a YAML file below the node's ~data_dir");
+  scenario_ = name_field(
+      "scenario", "An installed scenario, or a YAML file or saved scenario below the node's ~data_dir");
+  settings_ = new QLineEdit;
+  settings_->setObjectName("scenario_settings");
+  settings_->setPlaceholderText("settings, such as grid.width=512; seed=7");
+  settings_->setToolTip("Keys of the scenario that are otherwise than in its file, parted by ;");
   scenario_error_ = new ErrorLine("scenario_error");
   auto* const load = button("load_scenario", "Load", "Start this scenario; it replaces the present terrain");
+  auto* const save = button("save_scenario", "Save",
+                            "Save the scenario as it is now, with all of its state, under this name");
   connect(load, &QPushButton::clicked, this, &FilesForm::load_scenario);
-  return group_of("Scenario", {scenario_, load}, scenario_error_);
+  connect(save, &QPushButton::clicked, this, &FilesForm::save_scenario);
+  QGroupBox* const group = group_of("Scenario", {scenario_, save, load}, scenario_error_);
+  qobject_cast<QVBoxLayout*>(group->layout())->insertWidget(1, settings_);
+  return group;
 }
 
 QGroupBox* FilesForm::make_terrain() {
@@ -126,7 +139,19 @@ void FilesForm::show(const SceneLists& lists) {
 void FilesForm::load_scenario() {
   LoadScenarioRequest request;
   request.name = text(scenario_);
+  for (const QString& setting : settings_->text().split(';'))
+    if (!setting.trimmed().isEmpty()) request.settings.push_back(setting.trimmed().toStdString());
   link_.call<LoadScenario>(scenario_error_, "load_scenario", request);
+}
+
+void FilesForm::save_scenario() {
+  SaveScenarioRequest request;
+  request.name = text(scenario_);
+  link_.call<SaveScenario>(scenario_error_, "save_scenario", request,
+                           [this](const SaveScenarioResponse& answer) {
+                             scenario_error_->show_note("saved: " + answer.path);
+                             refresh();
+                           });
 }
 
 void FilesForm::save_terrain() {

@@ -8,6 +8,7 @@
 
 class QComboBox;
 class QGroupBox;
+class QLineEdit;
 
 namespace desert_sim {
 
@@ -27,12 +28,14 @@ class FilesForm : public QWidget {
   QGroupBox* make_checkpoint();
   void show(const SceneLists& lists);
   void load_scenario();
+  void save_scenario();
   void save_terrain();
   void load_terrain();
   void save_checkpoint();
   void load_checkpoint();
 
   NodeLink& link_;
+  QLineEdit* settings_;
   QComboBox *scenario_, *terrain_, *format_, *checkpoint_;
   ErrorLine *scenario_error_, *terrain_error_, *checkpoint_error_;
 };

@@ -9,6 +9,7 @@ namespace desert_sim {
 NodeLink::NodeLink(QObject* parent) : QObject(parent) {
   connect(&watch_, &NodeWatch::presence_changed, this, &NodeLink::presence_changed);
   connect(&watch_, &NodeWatch::status_came, this, &NodeLink::status_came);
+  connect(&watch_, &NodeWatch::description_came, this, &NodeLink::description_came);
   connect(&watch_, &NodeWatch::parameters_came, this, &NodeLink::parameters_came);
 }
 

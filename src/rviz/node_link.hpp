@@ -46,6 +46,7 @@ class NodeLink : public QObject {
  Q_SIGNALS:
   void presence_changed();
   void status_came(const desert_sim::SimulationStatusConstPtr& status);
+  void description_came(const dynamic_reconfigure::ConfigDescriptionConstPtr& description);
   void parameters_came(const dynamic_reconfigure::ConfigConstPtr& parameters);
 
  private:

@@ -105,8 +105,14 @@ void NodeWatch::subscribe(const std::string& node) {
         tell(generation, [this, parameters] { Q_EMIT parameters_came(parameters); });
       };
   status_subscriber_ = node_handle_.subscribe<SimulationStatus>(node + "/status", 1, hear);
+  const boost::function<void(const dynamic_reconfigure::ConfigDescriptionConstPtr&)> learn =
+      [this, generation](const dynamic_reconfigure::ConfigDescriptionConstPtr& description) {
+        tell(generation, [this, description] { Q_EMIT description_came(description); });
+      };
   parameter_subscriber_ =
       node_handle_.subscribe<dynamic_reconfigure::Config>(node + "/parameter_updates", 1, take);
+  description_subscriber_ = node_handle_.subscribe<dynamic_reconfigure::ConfigDescription>(
+      node + "/parameter_descriptions", 1, learn);
 }
 
 void NodeWatch::loop() {
@@ -125,7 +131,7 @@ void NodeWatch::loop() {
       rover = rover_;
     }
     if (other_node) {
-      status_subscriber_ = parameter_subscriber_ = ros::Subscriber();
+      status_subscriber_ = parameter_subscriber_ = description_subscriber_ = ros::Subscriber();
       heard_ = looked = looked_for_fleet = Clock::time_point();
       fleet_.forget();
     }
@@ -142,7 +148,7 @@ void NodeWatch::loop() {
     const Presence presence = look(node);
     // A new subscription also finds a node that was started anew under a new master, and is sent the status
     // at once.
-    status_subscriber_ = parameter_subscriber_ = ros::Subscriber();
+    status_subscriber_ = parameter_subscriber_ = description_subscriber_ = ros::Subscriber();
     if (presence == Presence::alive) subscribe(node);
     tell(seen_generation_, [this, presence] { set_presence(presence); });
   }

@@ -4,6 +4,7 @@
 
 #include <desert_sim/SimulationStatus.h>
 #include <dynamic_reconfigure/Config.h>
+#include <dynamic_reconfigure/ConfigDescription.h>
 #include <ros/callback_queue.h>
 
 #include <QObject>
@@ -45,6 +46,8 @@ class NodeWatch : public QObject {
   void presence_changed();
   /// `status` is shared with nobody who changes it.
   void status_came(const desert_sim::SimulationStatusConstPtr& status);
+  /// What live parameters the node has; once.
+  void description_came(const dynamic_reconfigure::ConfigDescriptionConstPtr& description);
   /// The node's live parameters, at the beginning and after each change.
   void parameters_came(const dynamic_reconfigure::ConfigConstPtr& parameters);
   /// All rovers and planners in the node's namespace, whenever they or what they say have changed.
@@ -66,7 +69,7 @@ class NodeWatch : public QObject {
   Presence presence_ = Presence::searching;  ///< in the thread of Qt
   ros::CallbackQueue queue_;                 ///< of the thread
   ros::NodeHandle node_handle_;              ///< with the queue above
-  ros::Subscriber status_subscriber_, parameter_subscriber_;
+  ros::Subscriber status_subscriber_, parameter_subscriber_, description_subscriber_;
   Clock::time_point heard_;       ///< when the last status came
   unsigned seen_generation_ = 0;  ///< the one that the thread works for
   Fleet fleet_;

@@ -10,6 +10,8 @@
 #include "src/core/error.hpp"
 #include "src/rviz/drive_form.hpp"
 #include "src/rviz/files_form.hpp"
+#include "src/rviz/physics_form.hpp"
+#include "src/rviz/plants_form.hpp"
 #include "src/rviz/run_controls.hpp"
 #include "src/rviz/status_view.hpp"
 #include "src/rviz/weather_form.hpp"
@@ -73,6 +75,18 @@ QWidget* DesertPanel::make_controls() {
             weather->show_parameters(*parameters);
           });
   tabs->addTab(scrolled(weather), "Weather");
+  auto* const physics = new PhysicsForm(link_);
+  connect(&link_, &NodeLink::description_came, physics,
+          [physics](const dynamic_reconfigure::ConfigDescriptionConstPtr& description) {
+            physics->describe(*description);
+          });
+  connect(&link_, &NodeLink::parameters_came, physics,
+          [physics](const dynamic_reconfigure::ConfigConstPtr& parameters) {
+            physics->show_parameters(*parameters);
+          });
+  tabs->addTab(scrolled(physics), "Physics");
+  plants_ = new PlantsForm(link_);
+  tabs->addTab(scrolled(plants_), "Plants");
   tabs->addTab(scrolled(files_), "Scenes");
   drive_ = new DriveForm(link_);
   tabs->addTab(scrolled(drive_), "Drive");
@@ -103,13 +117,18 @@ void DesertPanel::show_presence() {
   const NodeWatch::Presence presence = link_.watch().presence();
   status_->show_presence(presence, link_.node());
   controls_->setEnabled(presence == NodeWatch::Presence::alive);
-  if (presence == NodeWatch::Presence::alive) files_->refresh();
+  if (presence != NodeWatch::Presence::alive) return;
+  files_->refresh();
+  plants_->refresh();
 }
 
 void DesertPanel::show_status(const SimulationStatusConstPtr& status) {
   status_->show_status(status);
   run_->show_status(*status);
   wind_->show_status(*status);
+  if (status->scenario == scenario_) return;
+  scenario_ = status->scenario;
+  plants_->refresh();
 }
 
 void DesertPanel::load(const rviz::Config& config) {

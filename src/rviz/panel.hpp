@@ -11,6 +11,7 @@ namespace desert_sim {
 
 class DriveForm;
 class FilesForm;
+class PlantsForm;
 class RunControls;
 class StatusView;
 class WindForm;
@@ -42,7 +43,9 @@ class DesertPanel : public rviz::Panel {
   WindForm* wind_;
   DriveForm* drive_;
   FilesForm* files_;
-  QWidget* controls_;  ///< all that needs a node
+  PlantsForm* plants_;
+  std::string scenario_;  ///< whose species are shown
+  QWidget* controls_;     ///< all that needs a node
 };
 
 }  // namespace desert_sim

@@ -19,6 +19,17 @@ QString default_data_dir() {
   return (ros_home && *ros_home ? QString(ros_home) : QDir::homePath() + "/.ros") + "/desert_sim";
 }
 
+/// The names of the YAML files in a folder of config/.
+QStringList installed(const QString& folder) {
+  QStringList names;
+  const QString package = QString::fromStdString(ros::package::getPath("desert_sim"));
+  if (package.isEmpty()) return names;
+  for (const QFileInfo& file :
+       QDir(package + "/config/" + folder).entryInfoList({"*.yaml"}, QDir::Files, QDir::Name))
+    names << file.completeBaseName();
+  return names;
+}
+
 }  // namespace
 
 SceneLists list_folder(const std::string& data_dir) {
@@ -30,9 +41,10 @@ SceneLists list_folder(const std::string& data_dir) {
     const QString name = root.relativeFilePath(files.next());
     const QFileInfo file(name);
     if (file.fileName() == "terrain.yaml" && file.path() != ".") lists.terrains << file.path();
-    if (file.suffix() == "yaml" || file.suffix() == "yml") lists.scenarios << name;
+    const bool whole = file.fileName() == "scenario.yaml" && file.path() != ".";
+    if (file.suffix() == "yaml" || file.suffix() == "yml") lists.scenarios << (whole ? file.path() : name);
     if (file.suffix() == "bag") lists.terrains << name;
-    if (file.suffix() == "ckpt") lists.checkpoints << name;
+    if (file.suffix() == "ckpt" && !file.fileName().startsWith("state-")) lists.checkpoints << name;
   }
   for (QStringList* const names : {&lists.scenarios, &lists.terrains, &lists.checkpoints}) {
     names->sort();
@@ -45,12 +57,10 @@ SceneLists list_scenes(const std::string& node) {
   std::string data_dir;
   ros::param::get(node + "/data_dir", data_dir);  // stays empty if the node has none, or is not there
   SceneLists lists = list_folder(data_dir.empty() ? default_data_dir().toStdString() : data_dir);
-  const QString package = QString::fromStdString(ros::package::getPath("desert_sim"));
-  if (package.isEmpty()) return lists;
-  for (const QFileInfo& file :
-       QDir(package + "/config/scenarios").entryInfoList({"*.yaml"}, QDir::Files, QDir::Name))
-    lists.installed << file.completeBaseName();
+  lists.installed = installed("scenarios");
   return lists;
 }
+
+QStringList list_species() { return installed("species"); }
 
 }  // namespace desert_sim

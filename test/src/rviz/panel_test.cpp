@@ -21,8 +21,6 @@
 namespace rviz_test {
 namespace {
 
-enum Tab { wind, weather, scenes, drive };
-
 TEST_F(Panel, RunsPausesStepsAndResets) {
   window_->type("steps", "7");
   window_->click("step");

@@ -21,6 +21,9 @@
 
 namespace rviz_test {
 
+/// The tabs of the panel, in their order.
+enum Tab { wind, weather, physics, plants, scenes, drive };
+
 class PanelWindow {
  public:
   explicit PanelWindow(const std::string& node)
@@ -52,7 +55,7 @@ class PanelWindow {
                : "";
   }
 
-  void show_tab(int index) { find<QTabWidget>("tabs")->setCurrentIndex(index); }
+  void show_tab(Tab index) { find<QTabWidget>("tabs")->setCurrentIndex(index); }
   void click(const std::string& button) { QTest::mouseClick(find<QAbstractButton>(button), Qt::LeftButton); }
   void type(const std::string& field, const std::string& text) {
     auto* const widget = find<QWidget>(field);
