@@ -193,9 +193,8 @@ template <class E>
 void sweep_all(E& exec, const LevelView& fine, const AvalanchingParameters& p, Workspace& work) {
   const auto unsettled = [&] { return max_cells(exec, fine.grid, Excess{fine}) > p.tolerance; };
   const bool by_tangent = p.scheme == AvalancheScheme::taylor_keyser;
-  const float transfer = by_tangent ? 0.25f * p.transfer : p.transfer;
   do {
-    for (int n = 0; n < p.sweeps; ++n) sweep(exec, fine, transfer, by_tangent, work);
+    for (int n = 0; n < p.sweeps; ++n) sweep(exec, fine, transfer_of_sweep(p, n), by_tangent, work);
     work.iterations += p.sweeps;
   } while (p.quality == AvalancheQuality::converged && work.iterations < p.max_iterations && unsettled());
 }

@@ -22,8 +22,9 @@
 ///                   gradient, and not one of eight drops, exceeds the angle of repose (quads.hpp). Cones
 ///                   are round, and slip faces have no planes.
 ///   sweeps          Synchronous sweeps (Jacobi) of the whole grid by the equations above; the reference.
-///   taylor_keyser   Synchronous sweeps that release ¼ k_c of the largest drop, distributed by tangents; for
-///                   comparison.
+///                   With `low_transfer` every tenth and the last five have another k_c.
+///   taylor_keyser   Synchronous sweeps that release k_c `taylor_keyser_transfer` of the largest drop,
+///                   distributed by tangents; for comparison.
 ///
 /// Relaxation in `multilevel` consists of sweeps inside closed tiles, whose edges no sand crosses and whose
 /// seams lie elsewhere in each pass (tile.hpp). A sweep relaxes pairs of neighbours one after the other, as
@@ -140,6 +141,13 @@ struct Workspace {
 };
 
 Workspace make_workspace(Exec& exec, const Grid& grid, const AvalanchingParameters& p);
+
+/// k_c of the nth of a step's `sweeps`, from 0.
+inline float transfer_of_sweep(const AvalanchingParameters& p, int n) {
+  const bool low = (p.low_every > 0 && (n + 1) % p.low_every == 0) || n >= p.sweeps - p.low_last;
+  const float transfer = low && p.low_transfer > 0.0f ? p.low_transfer : p.transfer;
+  return p.scheme == AvalancheScheme::taylor_keyser ? p.taylor_keyser_transfer * transfer : transfer;
+}
 
 /// Offsets of the tiles [cells]. Seams move from pass to pass, and in eight steps each pass has had all
 /// offsets, so that seams leave no imprint in the terrain.

@@ -19,6 +19,10 @@ struct AvalanchingParameters {
   AvalancheScheme scheme = AvalancheScheme::gradient;
   AvalancheQuality quality = AvalancheQuality::good;
   float transfer = 1.0f;
+  float low_transfer = 0.0f;
+  int low_every = 10;
+  int low_last = 5;
+  float taylor_keyser_transfer = 0.25f;
   float coarsest_cell = 0.0f;
   int last_passes = 0;
   int sweeps = 50;
@@ -41,6 +45,17 @@ constexpr auto parameter_table(const AvalanchingParameters*) {
                 "converged: until tolerance (also for sweeps)."),
       parameter("transfer", &P::transfer, 0.05, 1, "1",
                 "Share of what would stabilise a cell that one sweep moves (k_c)."),
+      parameter(
+          "low_transfer", &P::low_transfer, 0, 1, "1",
+          "Likewise of some sweeps of the schemes sweeps and taylor_keyser, against artefacts (Nilles 2024, "
+          "figure 9: 0.5 beside 1); 0: none."),
+      parameter("low_every", &P::low_every, 0, 1000, "1",
+                "low_transfer is that of every so many sweeps; 0: of none."),
+      parameter("low_last", &P::low_last, 0, 1000, "1", "And of so many sweeps at the end of a step."),
+      parameter(
+          "taylor_keyser_transfer", &P::taylor_keyser_transfer, 0.01, 1, "1",
+          "Share of the largest drop that a sweep of taylor_keyser moves where transfer is 1 (k_c: 0.25 in "
+          "Taylor & Keyser 2023, 0.25 and 0.5 in Nilles 2024)."),
       parameter("coarsest_cell", &P::coarsest_cell, 0, 1000, "m",
                 "Width of cells at which coarsening stops; 0: four cells of the grid."),
       parameter("last_passes", &P::last_passes, 0, 16, "1",

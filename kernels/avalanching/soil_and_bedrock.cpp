@@ -16,9 +16,10 @@ struct SoilLevel {
     float bare, vegetated;  ///< tangents
     const float* vegetation;
     repose::RelativeMoisture moisture;
+    repose::MoistureFactor moisture_factor;
     DESERT_HD float operator[](int i) const {
       const float dry = lerp(bare, vegetated, value_or_zero(vegetation, i));
-      return dry * repose::moisture_factor(moisture(i));
+      return dry * moisture_factor(moisture(i));
     }
   };
 
@@ -81,7 +82,7 @@ void step_soil(E& exec, const TerrainView& t, const AvalanchingParameters& p, co
                         t.quanta(Layer::soil),
                         t.real(Layer::obstacle),
                         {tangents.soil, tangents.soil_vegetated, t.real(Layer::vegetation),
-                         repose::RelativeMoisture(t, repose)},
+                         repose::RelativeMoisture(t, repose), tangents.moisture_factor},
                         t.grid.cell_size * t.quanta_per_metre};
   for_each_cell(exec, t.grid, Release<SoilLevel>{level, p.transfer, false, work.share.data(), given});
   for_each_cell(exec, t.grid,

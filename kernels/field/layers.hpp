@@ -58,11 +58,9 @@ enum class Layer : int {
 };
 
 enum class Storage { quanta, real };  ///< fixed-point metres, or float32; both four bytes
-/// Simulated time for which layers are held [s].
-constexpr float held_for = 1.0f;
 enum class Lifetime {
   persistent,  ///< part of the state
-  held,        ///< likewise where a step is shorter than held_for, else derived
+  held,        ///< likewise where a step is shorter than `run.hold_time`, else derived
   derived,     ///< computed from the state for the processes of a step
   on_request   ///< computed from the state only when a snapshot needs it
 };

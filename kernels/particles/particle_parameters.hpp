@@ -38,6 +38,9 @@ struct ParticleParameters {
   float splash_deg = 50.0f;
   float splash_spread_deg = 30.0f;
   float creep_length = 0.004f;
+  float splash_speed = 40.0f;
+  float grains_per_roughness = 30.0f;
+  float shear_height = 10.0f;
 };
 
 constexpr auto parameter_table(const ParticleParameters*) {
@@ -81,7 +84,14 @@ constexpr auto parameter_table(const ParticleParameters*) {
       parameter("splash_spread_deg", &P::splash_spread_deg, 0, 60, "deg",
                 "Standard deviation of their directions about that of the wind."),
       parameter("creep_length", &P::creep_length, 0, 1, "m",
-                "How far what impacts throw up creeps, too, down a slope of 1."));
+                "How far what impacts throw up creeps, too, down a slope of 1."),
+      parameter("splash_speed", &P::splash_speed, 1, 1e4, "1",
+                "Speed of an impact, over sqrt(g d), at which what it throws up has 1 - 1/e of its greatest "
+                "speed (n_s; Kok & Renno 2009)."),
+      parameter("grains_per_roughness", &P::grains_per_roughness, 1, 1000, "1",
+                "Diameter of the grains over the roughness length of the bed, d/z_0 (n_0; Wang & Hu 2012)."),
+      parameter("shear_height", &P::shear_height, 1, 1e4, "1",
+                "Height, in grains, of the wind by which a shelter lessens the lift."));
 }
 static_assert(table_is_complete<ParticleParameters>());
 

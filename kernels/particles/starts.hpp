@@ -23,7 +23,7 @@ struct Starts {
   float lift_spread, splash_spread;   ///< standard deviations [half turns]
   float splash_sine, splash_cosine;   ///< of the angle of splash
   float splash_speed;                 ///< α √(g d)/a_s [m/s]
-  float per_impact_speed;             ///< 1/(40 √(g d)) [s/m]
+  float per_impact_speed;             ///< 1/(n_s √(g d)) [s/m]
 
   /// Sets the velocity of a grain with given parts upward and along the wind.
   DESERT_HD void aim(const Air& air, float up, float forward, float spread, RandomSequence& words,

@@ -56,13 +56,13 @@ inline LiftOff make_lift_off(const TerrainView& t, const StepInputs& in, const F
                              const Loose& loose, const Wind& wind, const Dice& dice, const Workspace& work) {
   const float u = wind.shear_velocity, excess = u * u - wind.threshold * wind.threshold;
   const float quanta = in.time_step * t.quanta_per_metre;
-  const float entering = in.influx * quanta / t.grid.cell_size;
+  const float entering = in.saltation.influx * quanta / t.grid.cell_size;
   return {flights,
           loose,
           u,
           wind.threshold * wind.threshold,
           excess > 0.0f ? wind.lift_rate * quanta / excess : 0.0f,
-          10.0f * in.particle.grain_diameter,
+          in.particle.shear_height * in.particle.grain_diameter,
           in.particle.exposed_height,
           wind.exposure,
           entering * std::fabs(wind.air.along_x),
@@ -86,8 +86,12 @@ void step(E& exec, const TerrainView& t, const StepInputs& in, const Dice& dice,
     const Downwind order(t.grid, in.above);
     find_shelter(exec, t, in, order, work);
     const Flights flights = make_flights(t, in, order, wind, ledger, work);
-    const Loose loose{t.quanta(Layer::sand), t.real(Layer::vegetation), t.quanta(Layer::water), t.quantum,
-                      repose::RelativeMoisture(t, in.repose)};
+    const Loose loose{t.quanta(Layer::sand),
+                      t.real(Layer::vegetation),
+                      t.quanta(Layer::water),
+                      t.quantum,
+                      repose::RelativeMoisture(t, in.repose),
+                      saltation::Dryness(in.saltation.moisture_cutoff)};
     for_each_item(exec, t.grid.cells(), make_lift_off(t, in, flights, loose, wind, dice, work));
     if (in.particle.splash_number > 0.0f)
       for_each_item(

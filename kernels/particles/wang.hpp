@@ -6,8 +6,8 @@
 ///
 ///   lift-off   V_z = B u,  B in [0.8, 2] and the angle in [21°, 90°] by dice, along the wind's direction
 ///   flight     dV/dt = ¾ C_d ρ_a/(ρ_s d) |U − V| (U − V) − g
-///   wind       U = u_*t/κ ln(z'/z_0)                           z' = z − z_d < z_f;  0 for z' < z_0 = d/30
-///              U = u_*t/κ ln(z_f/z_0) + u_*/κ ln(z'/z_f)       above
+///   wind       U = u_*t/κ ln(z'/z_0)                           z' = z − z_d < z_f;  0 for z' < z_0 = d/n_0
+///              U = u_*t/κ ln(z_f/z_0) + u_*/κ ln(z'/z_f)       above;   n_0 = `grains_per_roughness`
 ///   bounce     V_2 = −e_n V_1n + e_t V_1t     normal and tangential part of the velocity V_1
 ///   rest       where the speed away from the bed would be less than √(2 g d), which lifts a grain by d, or
 ///              after `most_bounces`
@@ -27,11 +27,11 @@
 ///
 /// Splash. Each impact at speed v throws up a_s v/√(g d) grains, at a speed with the mean
 ///
-///   v_e = α √(g d)/a_s (1 − exp(−v/(40 √(g d))))    exponentially distributed, at most v
+///   v_e = α √(g d)/a_s (1 − exp(−v/(n_s √(g d))))    exponentially distributed, at most v
 ///
-/// (Kok & Renno 2009; a_s = `splash_number`, α = `splash_momentum`), which hop once. On a slope that faces
-/// them more grains fall, and throw sand a hop further, to the crest. That lets ripples grow, and go with the
-/// wind (Anderson 1987). With a splash of the depth S sand creeps downhill,
+/// (Kok & Renno 2009; a_s = `splash_number`, α = `splash_momentum`, n_s = `splash_speed`), which hop once.
+/// On a slope that faces them more grains fall, and throw sand a hop further, to the crest. That lets
+/// ripples grow, and go with the wind (Anderson 1987). With a splash of the depth S sand creeps downhill,
 /// too: −λ_c S ∇h to the four neighbours, λ_c = `creep_length`.
 ///
 /// The rate of lift-off is what keeps the flow of grains in balance with the wind (Owen 1964): grains that
@@ -41,12 +41,13 @@
 ///   u_*t = a √((ρ_s/ρ_a − 1) g d)
 ///
 /// where u is the shear velocity at the cell. The shelter lessens it by the factor by which it lessens the
-/// wind ten grains above the bed. Crests stand in faster wind, which ends their growth (Bagnold 1941): it
-/// rises by the factor ln((z_e + h − h_u)/z_0)/ln(z_e/z_0) with h_u the mean ground upwind, weighted by
-/// exp(−distance/ℓ), z_e = `exposed_height`, ℓ = `upwind_length`. The last factor of E counts the impacts
-/// on a slope along the wind, because in steady transport a grain that comes to rest is replaced by one
-/// that impacts set free; Δv and the angle of impact α are means over level ground. Plants and moisture
-/// lessen E by the factors 1 − v and `dryness`, and the splash likewise; none is lifted under water.
+/// wind `shear_height` grains above the bed. Crests stand in faster wind, which ends their growth (Bagnold
+/// 1941): it rises by the factor ln((z_e + h − h_u)/z_0)/ln(z_e/z_0) with h_u the mean ground upwind,
+/// weighted by exp(−distance/ℓ), z_e = `exposed_height`, ℓ = `upwind_length`. The last factor of E counts
+/// the impacts on a slope along the wind, because in steady transport a grain that comes to rest is
+/// replaced by one that impacts set free; Δv and the angle of impact α are means over level ground. Plants
+/// and moisture lessen E by the factors 1 − v and M of saltation.hpp, and the splash likewise; none is
+/// lifted under water.
 ///
 /// The undisturbed wind blows everywhere in the same direction. Grains come to rest on sand, soil or rock,
 /// but not on obstacles: what would rest there lies where it last was over other ground. Over an open edge
@@ -65,6 +66,7 @@
 #include "kernels/particles/flight.hpp"
 #include "kernels/particles/particle_parameters.hpp"
 #include "kernels/sand/repose.hpp"
+#include "kernels/sand/saltation.hpp"
 #include "kernels/wind/vector.hpp"
 
 namespace desert_sim::particles {
@@ -118,11 +120,11 @@ float longest_step(const ParticleParameters& p, const Grid& grid, wind::Vector a
 
 struct StepInputs {
   ParticleParameters particle;
-  ReposeParameters repose;  ///< for the ground's capacity of moisture
-  float influx;             ///< [m²/s] over an open windward edge
-  float time_step;          ///< [s]
-  wind::Vector above;       ///< undisturbed wind [m/s]
-  float* impact_strength;   ///< [m], or null
+  ReposeParameters repose;        ///< for the ground's capacity of moisture
+  SaltationParameters saltation;  ///< for the influx and the cut-off by moisture
+  float time_step;                ///< [s]
+  wind::Vector above;             ///< undisturbed wind [m/s]
+  float* impact_strength;         ///< [m], or null
 };
 
 /// Writes wind_x and wind_y.

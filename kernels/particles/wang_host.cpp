@@ -12,8 +12,6 @@ namespace desert_sim::particles {
 
 namespace {
 
-constexpr double roughness_per_diameter = 1.0 / 30;
-
 double root_of_gravity_and_diameter(const ParticleParameters& p) {
   return std::sqrt(static_cast<double>(p.gravity) * static_cast<double>(p.grain_diameter));
 }
@@ -83,12 +81,13 @@ Starts make_starts(const ParticleParameters& p) {
           splash_number > 0
               ? static_cast<float>(static_cast<double>(p.splash_momentum) * root / splash_number)
               : 0.0f,
-          static_cast<float>(1 / (40 * root))};
+          static_cast<float>(1 / (static_cast<double>(p.splash_speed) * root))};
 }
 
 Wind::Wind(const ParticleParameters& p, wind::Vector above) {
   const double speed = std::hypot(static_cast<double>(above.x), static_cast<double>(above.y)),
-               d = static_cast<double>(p.grain_diameter), roughness = roughness_per_diameter * d,
+               d = static_cast<double>(p.grain_diameter),
+               roughness = 1.0 / static_cast<double>(p.grains_per_roughness) * d,
                grain = static_cast<double>(p.grain_density), density = static_cast<double>(p.air_density);
   const double kappa = shear_stress::von_karman;
   const double focus = static_cast<double>(p.focus_height), near = std::log(focus / roughness);

@@ -104,10 +104,11 @@ struct Loose {
   const Quanta* water;
   float quantum;
   repose::RelativeMoisture relative_moisture;
+  saltation::Dryness dryness;
 
   DESERT_HD float share(int i) const {
     if (static_cast<float>(value_or_zero(water, i)) * quantum > wet_depth) return 0.0f;
-    return (1.0f - value_or_zero(vegetation, i)) * saltation::dryness(relative_moisture(i));
+    return (1.0f - value_or_zero(vegetation, i)) * dryness(relative_moisture(i));
   }
 };
 

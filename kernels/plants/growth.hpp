@@ -18,10 +18,10 @@
 ///   r_largest = min((z − bedrock)/h_r, g_competition g_light r_max)
 ///   r_largest ≤ (surface of the water − z)/h_s   for underwater plants
 ///
-/// A plant wider than 1.1 r_largest is damaged, and shrinks if its species can. The damages d are 0 at the
-/// limit of the allowed range and at most 1: radius too large, requirement of water not met, too dark or too
-/// bright, ground too wet, slope too steep, roots exposed, stem buried, water too deep or, for underwater
-/// plants, absent. Any damage stops growth. A plant dies at health 0, or if it is not mature by
+/// A plant wider than `overgrown` r_largest is damaged, and shrinks if its species can. The damages d are
+/// 0 at the limit of the allowed range and at most 1: radius too large, requirement of water not met, too
+/// dark or too bright, ground too wet, slope too steep, roots exposed, stem buried, water too deep or, for
+/// underwater plants, absent. Any damage stops growth. A plant dies at health 0, or if it is not mature by
 /// `maturity_time`; it leaves humus. Plants read their neighbours' state before the step, so that their
 /// order does not matter.
 ///
@@ -46,6 +46,10 @@ DESERT_HD float excess(float beyond, float scale) {
   return clamp(beyond / maximum(scale, 1e-6f), 0.0f, 1.0f);
 }
 
+/// What a step leaves of the radius of a plant that shrinks, at least. No parameter: it keeps radii positive.
+constexpr float least_left = 0.05f;
+
+/// The factor ¼ has no parameter: `competition`, D, is a factor beside it.
 struct Competition {
   Neighbourhood near;
   View plants;
@@ -90,7 +94,7 @@ struct Grow {
   const SpeciesTraits* species;
   const long long* water_requests;
   const float *canopy_height, *illumination, *illumination_canopy;
-  float time_step, litter;
+  float time_step, litter, overgrown;
   Die height_die;
   Quanta *granted_water, *humus;
   int* deaths;
@@ -146,10 +150,11 @@ struct Grow {
   /// Returns the new radius, and adds the damage of a radius that is too large.
   DESERT_HD float new_radius(const SpeciesTraits& s, float radius, Response& r) const {
     r.largest_radius = minimum(r.largest_radius, r.competition * r.light * s.max_radius);
-    const bool too_wide = radius > 1.1f * r.largest_radius;
+    const bool too_wide = radius > overgrown * r.largest_radius;
     if (too_wide)
-      r.damage += excess(radius - 1.1f * r.largest_radius, 1.1f * maximum(r.largest_radius, 0.0f));
-    if (too_wide) return maximum(radius - time_step * s.shrink, maximum(r.largest_radius, 0.05f * radius));
+      r.damage += excess(radius - overgrown * r.largest_radius, overgrown * maximum(r.largest_radius, 0.0f));
+    if (too_wide)
+      return maximum(radius - time_step * s.shrink, maximum(r.largest_radius, least_left * radius));
     if (r.damage > 0.0f || radius >= r.largest_radius) return radius;
     return minimum(radius + time_step * s.growth * r.growth(), r.largest_radius);
   }

@@ -10,16 +10,16 @@ namespace desert_sim::plants {
 
 /// Appends new plants to the existing ones.
 template <class E>
-void spawn(E& exec, const Site& site, std::uint64_t seed, std::uint64_t step, float time_step,
-           Workspace& work) {
+void spawn(E& exec, const Site& site, const StepInputs& in, Workspace& work) {
   const SpawningLaw spawning{site,
                              work.species.data(),
                              work.species_count,
                              work.density.data(),
                              work.downwind.data(),
-                             time_step,
-                             seed,
-                             step};
+                             in.time_step,
+                             in.vegetation.seedling_share,
+                             in.seed,
+                             in.tick};
   for_each_cell(exec, site.grid, MarkSpawningCells{spawning, work.seeds.data()});
   prefix_sums(exec, work.sort_workspace, work.seeds.data(), work.seed_offsets.data(), site.grid.cells() + 1);
   for_each_cell(exec, site.grid,
@@ -39,13 +39,13 @@ void grow_and_spawn(E& exec, const TerrainView& t, const StepInputs& in, const D
                 SumRequests{water_uptake, work.plants(), work.species.data(), work.water_requests.data()});
   const Competition competition{work.neighbourhood(), work.plants(), work.competition.data(),
                                 work.species_count, t.quantum};
-  for_each_item(
-      exec, work.count,
-      Grow{water_uptake, competition, work.plants(), work.next_state(), work.species.data(),
-           work.water_requests.data(), t.real(Layer::canopy_height), t.real(Layer::illumination),
-           t.real(Layer::illumination_canopy), in.time_step, in.vegetation.litter, dice[Roll::plant_height],
-           work.granted_water.data(), t.quanta(Layer::humus), work.event_counts.data()});
-  spawn(exec, water_uptake.site, in.seed, in.tick, in.time_step, work);
+  for_each_item(exec, work.count,
+                Grow{water_uptake, competition, work.plants(), work.next_state(), work.species.data(),
+                     work.water_requests.data(), t.real(Layer::canopy_height), t.real(Layer::illumination),
+                     t.real(Layer::illumination_canopy), in.time_step, in.vegetation.litter,
+                     in.vegetation.overgrown, dice[Roll::plant_height], work.granted_water.data(),
+                     t.quanta(Layer::humus), work.event_counts.data()});
+  spawn(exec, water_uptake.site, in, work);
   if (t.quanta(Layer::moisture))
     for_each_item(exec, work.count,
                   DebitMoisture{water_uptake.site, work.plants(), work.granted_water.data(),

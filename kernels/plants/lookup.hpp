@@ -1,7 +1,8 @@
 #pragma once
-/// Neighbour look-up of plants: five uniform grids for radii up to 1.25, 2.5, 5, 10 and 20 m, with cells at
-/// least twice that wide. Nilles 2025 §3.2.6 has no grid for radii up to 1.25 m; with it two million bushes
-/// take 0.48 ms less of 4.8 ms a step (test/bench/oasis.yaml), and a sixth grid takes longer.
+/// Neighbour look-up of plants: five uniform grids for radii up to 1/16, ⅛, ¼, ½ and all of `largest_plant`
+/// (1.25 … 20 m), with cells at least twice that wide. Nilles 2025 §3.2.6 has no grid for radii up to 1.25 m;
+/// with it two million bushes take 0.48 ms less of 4.8 ms a step (test/bench/oasis.yaml), and a sixth grid
+/// takes longer.
 ///
 /// The key of a plant is its grid and cell. Plants are sorted by key, and each cell has the span of its
 /// plants. A periodic axis is divided into a whole number of cells, and distances are to the nearest image.
@@ -34,7 +35,8 @@ struct Lookup {
   int cells = 0;    ///< number of cells of all grids
 
   Lookup() = default;
-  explicit Lookup(const Grid& grid)
+  /// `largest_plant`: radius that no plant exceeds [m].
+  Lookup(const Grid& grid, float largest_plant)
       : width(grid.width * grid.cell_size),
         height(grid.height * grid.cell_size),
         periodic_x(grid.periodic_x),

@@ -14,7 +14,7 @@
 
 namespace desert_sim::plants {
 
-/// Density below which a place counts as bare.
+/// Density below which a place counts as bare. No parameter: it is for who looks at plants, and changes none.
 constexpr float bare_density = 0.02f;
 
 /// Computes rows first … first + rows − 1, which continue over the north edge.

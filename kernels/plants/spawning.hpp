@@ -3,7 +3,7 @@
 ///
 ///   weight   p_j = p_b (1 + k_density min(ρ_j, 1) + k_wind min(ρ_wj, 1)),   0 where the place does not suit
 ///   events   n   = ⌊min(Σ_j p_j/N_cells, 1) Δt + u⌋,   u uniform in [0, 1)
-///   radius   5 % of min((soil + sand)/h_r, r_max)
+///   radius   `seedling_share` · min((soil + sand)/h_r, r_max)
 ///
 /// The published P = 1 − (1 − min(Σ_j p_j/N_cells, 1))^Δt is the same for Δt = 1 s, but in shorter steps more
 /// plants come up, one a step where the sum is 1, and fewer in longer ones.
@@ -23,8 +23,6 @@
 
 namespace desert_sim::plants {
 
-constexpr float seedling_share = 0.05f;
-
 DESERT_HD float weight_of(const SpeciesTraits& s, float density, float downwind) {
   return s.spawn * (1.0f + s.spawn_density * minimum(density, 1.0f) + s.spawn_wind * minimum(downwind, 1.0f));
 }
@@ -35,7 +33,7 @@ DESERT_HD int number_of_events(double q, double dt, double u) {
 }
 
 /// Radius of a new plant [m]; `loose_depth`: soil + sand [m].
-DESERT_HD float seedling_radius(const SpeciesTraits& s, float loose_depth) {
+DESERT_HD float seedling_radius(const SpeciesTraits& s, float loose_depth, float seedling_share) {
   return seedling_share * minimum(loose_depth / s.root, s.max_radius);
 }
 
@@ -44,7 +42,7 @@ struct SpawningLaw {
   const SpeciesTraits* species;
   int species_count;
   const float *density, *downwind;
-  float time_step;
+  float time_step, seedling_share;
   std::uint64_t seed, step;
 
   DESERT_HD float weight(int kind, int i) const {
@@ -54,7 +52,7 @@ struct SpawningLaw {
 
   DESERT_HD bool is_suitable(int kind, int i, float slope) const {
     const SpeciesTraits& s = species[kind];
-    const float radius = seedling_radius(s, site.loose_depth(i)), depth = site.water_depth(i);
+    const float radius = seedling_radius(s, site.loose_depth(i), seedling_share), depth = site.water_depth(i);
     if (!(radius > 0.0f) || value_or_zero(site.obstacle, i) > 0.0f || slope > s.slope) return false;
     if (density[kind * static_cast<long long>(site.grid.cells()) + i] > s.separation) return false;
     const float stem = radius * s.stem;
@@ -159,7 +157,8 @@ struct CreatePlants {
     next_state.x[n] = within(x, words.word[0]);
     next_state.y[n] = within(y, words.word[1]);
     next_state.z[n] = site.surface(i);
-    next_state.radius[n] = seedling_radius(spawning.species[kind], site.loose_depth(i));
+    next_state.radius[n] =
+        seedling_radius(spawning.species[kind], site.loose_depth(i), spawning.seedling_share);
     next_state.health[n] = 1.0f;
     next_state.water[n] = 0.0f;
     next_state.age[n] = 0.0f;

@@ -5,8 +5,9 @@
 
 namespace desert_sim {
 
-/// Largest radius of a plant [m], on which the neighbour look-up relies.
-constexpr float largest_plant = 20.0f;
+/// The most that `vegetation.largest_plant` can be [m].
+constexpr float widest_plant = 200.0f;
+/// No parameter: a cell of plants::Cover has so many sums.
 constexpr int max_species = 16;
 
 /// The 26 parameters of a species; the defaults are those of a tree. Lengths that grow with a plant are
@@ -43,7 +44,8 @@ struct SpeciesTraits {
 constexpr auto parameter_table(const SpeciesTraits*) {
   using P = SpeciesTraits;
   return std::make_tuple(
-      parameter("max_radius", &P::max_radius, 0.01, largest_plant, "m", "Radius that a plant can reach."),
+      parameter("max_radius", &P::max_radius, 0.01, widest_plant, "m",
+                "Radius that a plant can reach; vegetation.largest_plant at most."),
       parameter("growth", &P::growth, 0, 100, "m/s", "Growth of the radius where nothing hinders it."),
       parameter("position_adjust", &P::position_adjust, 0, 100, "m/s",
                 "How fast a plant follows ground that rises or sinks."),
@@ -89,6 +91,9 @@ struct VegetationParameters {
   float litter = 10.0f;
   float humus_limit = 1.0f;
   bool canopy_shadow = true;
+  float largest_plant = 20.0f;
+  float seedling_share = 0.05f;
+  float overgrown = 1.1f;
 };
 
 constexpr auto parameter_table(const VegetationParameters*) {
@@ -112,7 +117,16 @@ constexpr auto parameter_table(const VegetationParameters*) {
                 "A dead plant leaves as much humus as it made in so many seconds at full density."),
       parameter("humus_limit", &P::humus_limit, 0, 100, "m", "Most humus of a cell; what is more decays."),
       parameter("canopy_shadow", &P::canopy_shadow,
-                "Whether the wind sees the canopy's top, and is blocked by it."));
+                "Whether the wind sees the canopy's top, and is blocked by it."),
+      parameter(
+          "largest_plant", &P::largest_plant, 0.01, widest_plant, "m",
+          "Radius that no plant exceeds, for which the look-up of neighbours is made (Nilles 2025: 20 m)."),
+      parameter("seedling_share", &P::seedling_share, 0.001, 1, "1",
+                "Radius of a new plant over the largest that there is room for (Nilles 2025: 5 %)."),
+      parameter(
+          "overgrown", &P::overgrown, 1, 100, "1",
+          "Radius, over the largest that light, room and neighbours allow, beyond which a plant is damaged "
+          "and shrinks (Nilles 2025: 110 %)."));
 }
 static_assert(table_is_complete<VegetationParameters>());
 

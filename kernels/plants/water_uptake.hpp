@@ -3,15 +3,15 @@
 ///
 ///   volumes     V_stem = ⅔ π r³ h_s,   V_root = ⅔ π r³ h_r
 ///   required    W_req   = Δt φ_w V_stem
-///   available   W_avail = min(Δt, 1 s) M V_root,   M = min(moisture/`moisture_capacity`, 1)
+///   available   W_avail = min(Δt, t_d) M V_root,   M = min(moisture/(c_M d_M), 1)
 ///   capacity    W_cap   = w_c (V_stem + V_root)
 ///   uptake      W = min(W_avail, W_req + max(W_cap − stored, 0))
 ///   debit       `draw` · min(π r²/l², 1) · moisture · W/(M V_root)   from the cell's moisture
 ///
-/// Volumes of water [m³] are counted as volumes of saturated ground. The debit is in whole quanta
-/// (dice.hpp), and the ledger records it as outflow. Where the plants of a cell request more than there is,
-/// each gets a part in proportion to its request, rounded down; the requests are summed as integers, so that
-/// their order does not matter.
+/// c_M and d_M are those of repose.hpp, t_d = 1 s. Volumes of water [m³] are counted as volumes of saturated
+/// ground. The debit is in whole quanta (dice.hpp), and the ledger records it as outflow. Where the plants of
+/// a cell request more than there is, each gets a part in proportion to its request, rounded down; the
+/// requests are summed as integers, so that their order does not matter.
 ///
 /// Plants live faster than in nature, and take up water as much faster: at a `draw` of 1/100 a closed cover
 /// of bushes still takes up a rain of some 2 m an hour; at 1/10 no rain of the climates kept the ground
@@ -33,17 +33,21 @@ struct WaterDemand {
   Quanta request = 0;  ///< requested from the cell's moisture
 };
 
+/// Time in which roots could take up all the water that they reach [s]. No parameter: the published equation
+/// has Δt in its place, which longer steps would multiply beyond what there is.
+constexpr float draining_time = 1.0f;
+
 struct WaterUptake {
   Site site;
   const Quanta* moisture;
-  float capacity, time_step, draw;
+  float capacity, time_step, draw;  ///< capacity: of the deepest moist ground [m]
   Die die;
 
   WaterUptake(const TerrainView& t, const ReposeParameters& repose, const VegetationParameters& p,
               const float* heights, float dt, const Dice& dice)
       : site(t, repose, heights),
         moisture(t.quanta(Layer::moisture)),
-        capacity(repose.moisture_capacity),
+        capacity(repose.moisture_capacity * repose.moisture_depth),
         time_step(dt),
         draw(p.draw),
         die(dice[Roll::water_uptake]) {}
@@ -58,7 +62,7 @@ struct WaterUptake {
     WaterDemand t;
     t.required_water = time_step * s.water_use * stem;
     t.storage_capacity = s.water_capacity * (stem + roots);
-    t.available_water = minimum(time_step, 1.0f) * saturation * roots;
+    t.available_water = minimum(time_step, draining_time) * saturation * roots;
     t.wanted_water =
         minimum(t.available_water, t.required_water + maximum(t.storage_capacity - stored, 0.0f));
     if (!(t.wanted_water > 0.0f) || !(draw > 0.0f)) return t;

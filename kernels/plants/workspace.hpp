@@ -34,8 +34,9 @@ struct Workspace {
   std::size_t bytes() const;
 };
 
-/// `competition`: as many rows and columns as there are species.
-Workspace make_workspace(Exec& exec, const Grid& grid, int capacity,
+/// `largest_plant`: radius that none exceeds [m]; `competition`: as many rows and columns as there are
+/// species.
+Workspace make_workspace(Exec& exec, const Grid& grid, int capacity, float largest_plant,
                          const std::vector<SpeciesTraits>& species, const std::vector<float>& competition);
 
 /// Lets the plants live by other traits from now on. Species keep their numbers; there may be more of them

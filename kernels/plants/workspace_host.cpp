@@ -4,12 +4,12 @@
 
 namespace desert_sim::plants {
 
-Workspace make_workspace(Exec& exec, const Grid& grid, int capacity,
+Workspace make_workspace(Exec& exec, const Grid& grid, int capacity, float largest_plant,
                          const std::vector<SpeciesTraits>& species, const std::vector<float>& competition) {
   const auto cells = static_cast<std::size_t>(grid.cells()), room = static_cast<std::size_t>(capacity);
   Workspace work;
   work.capacity = capacity;
-  work.lookup = Lookup(grid);
+  work.lookup = Lookup(grid, largest_plant);
   for (Buffer<std::uint32_t>* columns : {&work.now, &work.next})
     *columns = Buffer<std::uint32_t>(exec, column_count * room);
   work.spans = Buffer<Span>(exec, static_cast<std::size_t>(work.lookup.cells + Lookup::levels));

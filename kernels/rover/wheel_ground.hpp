@@ -62,6 +62,7 @@ struct WheelGround {
   float load;           ///< nominal load W of a wheel [N]
   Soil loose, packed;
   float light_packed;
+  repose::MoistureFactor moisture_factor;  ///< f
 
   // ---- what a rover needs
 
@@ -133,7 +134,7 @@ struct WheelGround {
     return clamp(ground.looseness, 0.0f, 1.0f) * deep * dry;
   }
   DESERT_HD Soil soil(const Ground& ground) const {
-    const float l = softness(ground), weak = minimum(repose::moisture_factor(ground.moisture), 1.0f);
+    const float l = softness(ground), weak = minimum(moisture_factor(ground.moisture), 1.0f);
     return {lerp(packed.cohesion, loose.cohesion, l), lerp(packed.tan_friction, loose.tan_friction, l),
             weak * lerp(packed.k_c, loose.k_c, l),    weak * lerp(packed.k_phi, loose.k_phi, l),
             lerp(packed.exponent, loose.exponent, l), lerp(packed.shear, loose.shear, l)};
@@ -157,10 +158,9 @@ struct WheelGround {
     const float standing = static_sinkage(load_share, s), length = contact_length(standing);
     const float pressed = minimum(standing, maximum(ground.sand_depth, 0.0f)), n = s.exponent;
     const float resistance = width * (s.k_c / width + s.k_phi) * power(pressed, n + 1.0f) / (n + 1.0f);
-    return {
-        resistance / weight,
-        (s.cohesion * width * length / weight + s.tan_friction) * repose::moisture_factor(ground.moisture),
-        length / s.shear};
+    return {resistance / weight,
+            (s.cohesion * width * length / weight + s.tan_friction) * moisture_factor(ground.moisture),
+            length / s.shear};
   }
   /// Share of the strength that shear over the contact mobilises at x = s L/K: 1 − (1 − e^(−x))/x.
   DESERT_HD static float mobilised(float x) { return x > 0.0f ? 1.0f - lost_share(x) / x : 0.0f; }
@@ -183,8 +183,7 @@ struct WheelGround {
   }
 
   DESERT_HD float light_share(const Ground& ground) const {
-    return lerp(light_packed, 1.0f, softness(ground)) /
-           minimum(repose::moisture_factor(ground.moisture), 1.0f);
+    return lerp(light_packed, 1.0f, softness(ground)) / minimum(moisture_factor(ground.moisture), 1.0f);
   }
   DESERT_HD float light_slip(float slope, float speed, const Ground& ground) const {
     const float degrees = slope * degrees_per_radian;
@@ -202,7 +201,8 @@ struct WheelGround {
   }
 };
 
-inline WheelGround make_wheel_ground(const TraversabilityParameters& rover, const WheelGroundParameters& g) {
+inline WheelGround make_wheel_ground(const TraversabilityParameters& rover, const WheelGroundParameters& g,
+                                     const ReposeParameters& repose = {}) {
   const auto tan_of = [](float degrees) { return repose::Tangents::tangent(degrees); };
   return {rover.wheel_law,
           rover.wheel_radius,
@@ -212,7 +212,8 @@ inline WheelGround make_wheel_ground(const TraversabilityParameters& rover, cons
            g.loose_shear},
           {g.packed_cohesion, tan_of(g.packed_friction_deg), g.packed_k_c, g.packed_k_phi, g.packed_exponent,
            g.packed_shear},
-          g.light_packed};
+          g.light_packed,
+          repose::MoistureFactor(repose)};
 }
 
 }  // namespace desert_sim::wheels

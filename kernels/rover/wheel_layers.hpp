@@ -115,7 +115,7 @@ inline WheelsAt make_wheels_at(const TerrainView& t, const Surface& surface, con
     return static_cast<int>(minimum(length + 0.5f, static_cast<float>(max_half_wheelbase)));
   };
   return {surface,
-          wheels::make_wheel_ground(rover.limits, rover.ground),
+          wheels::make_wheel_ground(rover.limits, rover.ground, rover.repose),
           cells(half),
           cells(half / 1.41421356f),
           rover.limits.drive_speed,

@@ -12,7 +12,7 @@ Prepare<inside, bare> prepare(const TerrainView& t, const StepInputs& in, const 
                               const Workspace& work) {
   const ContinuumParameters& p = in.continuum;
   const float l = t.grid.cell_size;
-  return {saltation::Inputs<bare>(t, in.repose, 1.0f, 1.0f),
+  return {saltation::Inputs<bare>(t, in.repose, in.saltation, in.echo, 1.0f, 1.0f),
           order,
           drift,
           SaturatedFlux(p, shear_stress::shear_velocity_per_wind(in.stress)),
@@ -22,7 +22,7 @@ Prepare<inside, bare> prepare(const TerrainView& t, const StepInputs& in, const 
           in.time_step / l * t.quanta_per_metre,
           in.time_step * t.quanta_per_metre,
           t.quantum / l,
-          in.influx,
+          in.saltation.influx,
           dice[Roll::influx],
           ledger,
           in.heights,
@@ -48,7 +48,7 @@ Settle<inside, bare> settle(const TerrainView& t, const StepInputs& in, const Do
                             const Drift& drift, const Dice& dice, LedgerView ledger, const Workspace& work) {
   const abrasion::Abrade abrade =
       saltation::abrade_for(t, in.abrasion, in.time_step, dice[Roll::abrasion], ledger);
-  return {saltation::Inputs<bare>(t, in.repose, 1.0f, 1.0f),
+  return {saltation::Inputs<bare>(t, in.repose, in.saltation, in.echo, 1.0f, 1.0f),
           order,
           drift,
           SweepFields(work),

@@ -25,12 +25,12 @@
 /// airborne_sand until the next step takes it in on the other side; over an open edge it is booked as
 /// outflow.
 ///
-/// Plants take the share of the stress 1 − 1/(1 + Γ v), Γ = `plant_drag`. Moisture divides the threshold by
-/// the dryness of saltation_inputs.hpp; nothing is taken up under water. An obstacle hands on what comes. In
-/// the eddies before cliffs (echo_dunes.hpp), sand is lifted at −r_e m/s and none settles where r_e < 0;
-/// where r_e > 0 the share r_e more settles and half as much is taken up. Abrasion acts on ground that is
-/// covered by less than its `cover`, with q for the product of wind and bouncing sand of abrasion.hpp. The
-/// strength of impacts is q/|w|, the sand over a metre.
+/// Plants take the share of the stress 1 − 1/(1 + Γ v), Γ = `plant_drag`. Moisture divides the threshold
+/// by the dryness of saltation_inputs.hpp; nothing is taken up under water. An obstacle hands on what
+/// comes. In the eddies before cliffs (echo_dunes.hpp), sand is lifted at −r_e m/s and none settles where
+/// r_e < 0; where r_e > 0 the share r_e more settles and the share `sticky_lift` is taken up. Abrasion
+/// acts on ground that is covered by less than its `cover`, with q for the product of wind and bouncing
+/// sand of abrasion.hpp. The strength of impacts is q/|w|, the sand over a metre.
 ///
 /// Where the layers flux_x and flux_y are in use, they get q e, from the counted quanta: the mean of what
 /// enters and leaves a cell.
@@ -45,6 +45,7 @@
 #include "kernels/field/layers.hpp"
 #include "kernels/field/ledger.hpp"
 #include "kernels/sand/abrasion.hpp"
+#include "kernels/sand/saltation.hpp"
 #include "kernels/sand/saturated_flux.hpp"
 #include "kernels/wind/shear_stress.hpp"
 
@@ -86,12 +87,13 @@ struct StepInputs {
   ShearStressParameters stress;
   AbrasionParameters abrasion;
   ReposeParameters repose;
-  float influx;            ///< [m²/s] over an open windward edge
-  float time_step;         ///< [s]
-  float flux_time;         ///< over which flux_x and flux_y are a mean [s]
-  wind::Vector above;      ///< undisturbed wind: its direction orders the sweep
-  const float* heights;    ///< of the ground [quanta]
-  float* impact_strength;  ///< [m], or null
+  SaltationParameters saltation;  ///< for the influx and the cut-off by moisture
+  EchoDuneParameters echo;        ///< for what is taken up where sand is held
+  float time_step;                ///< [s]
+  float flux_time;                ///< over which flux_x and flux_y are a mean [s]
+  wind::Vector above;             ///< undisturbed wind: its direction orders the sweep
+  const float* heights;           ///< of the ground [quanta]
+  float* impact_strength;         ///< [m], or null
 };
 
 template <class E>

@@ -125,7 +125,7 @@ struct Prepare {
     const float rising = e_x * slope_x + e_y * slope_y;
     const float slope_along =
         static_cast<float>(drift.forward_x) * slope_x + static_cast<float>(drift.forward_y) * slope_y;
-    const float dry = in.flooded(i) ? 0.0f : saltation::dryness(in.moisture(i));
+    const float dry = in.flooded(i) ? 0.0f : in.dryness(in.moisture(i));
     const float shields =
         maximum(flux.shields_per_wind_squared * speed * speed, 1e-20f) / (1.0f + plant_drag * in.plants(i));
     const float at_threshold = flux.threshold * maximum(1.0f + rising * per_friction, 0.0f);
@@ -149,7 +149,9 @@ struct Prepare {
     const bool solid = in.solid(i);
     const bool eddy = echo < 0.0f;
     to.decay[n] = solid || eddy ? 1.0f : decay * (1.0f - maximum(echo, 0.0f));
-    to.level_gain[n] = solid ? 0.0f : eddy ? -echo * time_in_quanta : (echo > 0.0f ? 0.5f : 1.0f) * gain;
+    to.level_gain[n] = solid  ? 0.0f
+                       : eddy ? -echo * time_in_quanta
+                              : (echo > 0.0f ? in.sticky_lift : 1.0f) * gain;
     to.lying[n] = solid ? 0 : sand[i];
   }
 

@@ -30,7 +30,7 @@ template <class E>
 void step(E& exec, const TerrainView& t, const StepInputs& in, const Dice& dice, LedgerView ledger,
           Workspace& work) {
   const SaltationParameters& p = in.saltation;
-  const Inputs<false> layers(t, in.repose, p.hop_time, in.time_step / p.hop_time);
+  const Inputs<false> layers(t, in.repose, p, in.echo, p.hop_time, in.time_step / p.hop_time);
   const Quanta slab =
       std::max(to_quanta_at_most(in.desertscape.slab, t.quanta_per_metre, load_limit), Quanta{1});
   Quanta *sand = t.quanta(Layer::sand), *airborne = t.quanta(Layer::airborne_sand);

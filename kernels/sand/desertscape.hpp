@@ -65,6 +65,7 @@ struct StepInputs {
   SaltationParameters saltation;
   AbrasionParameters abrasion;
   ReposeParameters repose;  ///< for the ground's capacity of moisture
+  EchoDuneParameters echo;  ///< for the lift where sand is held
   float creeping;           ///< depth that an impact sets creeping [m]
   float time_step;          ///< [s]
   float flux_time;          ///< over which the layers flux_x and flux_y are a mean [s]

@@ -48,7 +48,7 @@ struct Slide {
   /// The share of what slid that did so because it was steep, and not because impacts made it creep.
   DESERT_HD float avalanche_share(int i) const {
     const float at_rest = lerp(tangents.sand, tangents.vegetated, value_or_zero(vegetation, i)) *
-                          repose::moisture_factor(moisture(i));
+                          tangents.moisture_factor(moisture(i));
     return clamp(2.0f * present_tangents[i] / at_rest - 1.0f, 0.0f, 1.0f);
   }
   DESERT_HD void operator()(int x, int y) const {

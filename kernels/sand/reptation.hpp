@@ -85,7 +85,7 @@ struct Angle {
   }
   /// Tangent at vegetation v and relative moisture m, from that of dry bare sand.
   DESERT_HD float tangent_at(float dry_and_bare, float v, float m) const {
-    return lerp(dry_and_bare, tangents.vegetated, v) * repose::moisture_factor(m);
+    return lerp(dry_and_bare, tangents.vegetated, v) * tangents.moisture_factor(m);
   }
 };
 

@@ -23,7 +23,7 @@ template <bool bare, class E>
 void hop(E& exec, const TerrainView& t, const StepInputs& inputs, float hop_share, const SaltationDice& dice,
          LedgerView ledger, const abrasion::Abrade& abrade) {
   const SaltationParameters& p = inputs.saltation;
-  const Inputs<bare> in(t, inputs.repose, p.hop_time, hop_share);
+  const Inputs<bare> in(t, inputs.repose, p, inputs.echo, p.hop_time, hop_share);
   const Lift<bare> lift{in, p};
   Quanta *sand = t.quanta(Layer::sand), *airborne = t.quanta(Layer::airborne_sand), *landed = inputs.landed;
   const LiftAndAdvect<bare> advect{

@@ -3,14 +3,14 @@
 /// bounces on. Expected values replace random events. Nilles 2024 §3.6, eq. 5; Nilles 2025 §3.3.2 for soil,
 /// moisture and water.
 ///
-///   lift      L = min(s, T (ε_s (1 − r_s)(1 − v)(r_e > 0 ? ½ : 1) M + (r_e < 0 ? k_e : 0)))
-///             M = clamp(1 − 10 m, 0, 1), and 0 under water
+///   lift      L = min(s, T (ε_s (1 − r_s)(1 − v)(r_e > 0 ? k_s : 1) M + (r_e < 0 ? k_e : 0)))
+///             M = clamp(1 − m/m_c, 0, 1), and 0 under water
 ///             s ← s − φ L
 ///             c = s − (1 − φ) L, the sand that L leaves on the ground
 ///   advect    φ (a + L) moves by w T / l cells and is scattered bilinearly to the four cells around; the
 ///             rest of a waits. Of what lands in a cell, a binomial kernel of the standard deviation
 ///             `hop_spread`, at most 0.7 l, takes shares to its eight neighbours: hops differ in length.
-///   deposit   p = clamp(max(r_s, (1 − f) + v f, r_e), 0, 1) · clamp(1 − 10 m, 0.01, 1)
+///   deposit   p = clamp(max(r_s, (1 − f) + v f, r_e), 0, 1) · max(M, p_w)
 ///             p = 0 on obstacles and where r_e < 0
 ///             f = 0.4 on sand, 0.5 on soil, 0.6 on rock, by c
 ///             s ← s + p · landed
@@ -21,10 +21,11 @@
 /// of it does in T, so that flux and airborne sand of a steady state do not depend on Δt: over a flat bed the
 /// flux is ε_s T |w|/p, and a = ε_s T (1 − p)/p. A step with Δt > T consists of ⌈Δt/T⌉ equal parts.
 ///
-/// Symbols: s sand, a airborne_sand, w wind, r_s wind_shadow, r_e echo, v vegetation, m relative moisture.
-/// Nothing is lifted in still air or below `threshold_speed`. Under water the last factor of p is 0.01. The
-/// scatter adds integers, so that its result does not depend on the order of threads. Amounts below 256
-/// quanta are rounded by dice (dice.hpp), and so few land in one of the four cells, drawn by the shares.
+/// Symbols: s sand, a airborne_sand, w wind, r_s wind_shadow, r_e echo, v vegetation, m relative moisture,
+/// m_c `moisture_cutoff`, p_w `least_deposit`, k_s `sticky_lift` of echo_dunes.hpp. Nothing is lifted in
+/// still air or below `threshold_speed`. The scatter adds integers, so that its result does not depend on the
+/// order of threads. Amounts below 256 quanta are rounded by dice (dice.hpp), and so few land in one of the
+/// four cells, drawn by the shares.
 ///
 /// Sand that the wind carries over an open edge is recorded in the ledger as outflow; `influx` enters where
 /// the wind blows in, spread over the length of a hop w T.
@@ -48,11 +49,13 @@
 #include "kernels/field/ledger.hpp"
 #include "kernels/sand/abrasion.hpp"
 #include "kernels/sand/reptation.hpp"
+#include "kernels/wind/echo_dunes.hpp"
 
 namespace desert_sim {
 
 /// Of the hops of this file and of the same as random events of slabs (desertscape.hpp). For continuum.hpp
-/// only `enabled`, `influx` and `flux` count, for slabs and flights of grains only `influx`.
+/// only `enabled`, `moisture_cutoff`, `influx` and `flux` count, for flights of grains only
+/// `moisture_cutoff` and `influx`, for slabs only `influx`.
 struct SaltationParameters {
   bool enabled = true;
   float lift = 1.0f;
@@ -63,6 +66,8 @@ struct SaltationParameters {
   float bounce_on_soil = 0.5f;
   float bounce_on_rock = 0.6f;
   float bare_depth = 0.001f;
+  float moisture_cutoff = 0.1f;
+  float least_deposit = 0.01f;
   float influx = 0.0f;
   bool flux = false;
 };
@@ -86,6 +91,14 @@ constexpr auto parameter_table(const SaltationParameters*) {
                 "Share of landing sand that bounces on rock."),
       parameter("bare_depth", &P::bare_depth, 0, 1, "m",
                 "Depth of sand below which the ground counts as bare."),
+      parameter(
+          "moisture_cutoff", &P::moisture_cutoff, 0.001, 1, "1",
+          "Relative moisture at which the wind lifts no more sand; it lifts less the nearer to that the "
+          "ground is (Nilles 2025: 10 %)."),
+      parameter(
+          "least_deposit", &P::least_deposit, 0, 1, "1",
+          "Share of the usual deposit that is left on wet ground and under water, so that sand does not "
+          "pile up at their edge (Nilles 2025: 1 %)."),
       parameter("influx", &P::influx, 0, 100, "m^2/s",
                 "Sand that enters an open windward edge, per metre of edge."),
       parameter("flux", &P::flux, "Whether the layers flux_x and flux_y tell what the wind carries."));
@@ -116,6 +129,7 @@ struct StepInputs {
   SaltationParameters saltation;
   AbrasionParameters abrasion;
   ReposeParameters repose;     ///< for the ground's capacity of moisture
+  EchoDuneParameters echo;     ///< for the lift where sand is held
   float time_step;             ///< [s]
   float flux_time;             ///< over which the layers flux_x and flux_y are a mean [s]
   Quanta* landed;              ///< scratch, one value a cell [quanta]

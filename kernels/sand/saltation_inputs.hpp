@@ -5,12 +5,19 @@
 #include "kernels/field/layers.hpp"
 #include "kernels/sand/abrasion.hpp"
 #include "kernels/sand/repose.hpp"
+#include "kernels/sand/saltation.hpp"
 
 namespace desert_sim::saltation {
 
-DESERT_HD float dryness(float relative_moisture) {
-  return clamp(1.0f - 10.0f * relative_moisture, 0.0f, 1.0f);
-}
+/// M of saltation.hpp.
+struct Dryness {
+  float per_moisture;  ///< 1/m_c
+
+  explicit Dryness(float moisture_cutoff) : per_moisture(1.0f / moisture_cutoff) {}
+  DESERT_HD float operator()(float relative_moisture) const {
+    return clamp(1.0f - per_moisture * relative_moisture, 0.0f, 1.0f);
+  }
+};
 
 /// Layers that the laws read. `bare` is a desert of rock and sand alone, without the optional layers and
 /// without abrasion; laws for it are compiled without the tests for these.
@@ -23,8 +30,11 @@ struct Inputs {
   const float *wind_x, *wind_y, *wind_shadow, *echo, *vegetation, *obstacle;
   const Quanta *water, *soil;
   repose::RelativeMoisture relative_moisture;
+  Dryness dryness_of;
+  float sticky_lift;  ///< share of the lift that is left where sand is held
 
-  Inputs(const TerrainView& t, const ReposeParameters& repose, float time, float share)
+  Inputs(const TerrainView& t, const ReposeParameters& repose, const SaltationParameters& p,
+         const EchoDuneParameters& echo_dunes, float time, float share)
       : grid(t.grid),
         quantum(t.quantum),
         quanta_per_metre(t.quanta_per_metre),
@@ -38,7 +48,9 @@ struct Inputs {
         obstacle(t.real(Layer::obstacle)),
         water(t.quanta(Layer::water)),
         soil(t.quanta(Layer::soil)),
-        relative_moisture(t, repose) {}
+        relative_moisture(t, repose),
+        dryness_of(p.moisture_cutoff),
+        sticky_lift(echo_dunes.sticky_lift) {}
 
   template <class Value>
   DESERT_HD Value value_if_present(const Value* layer, int i) const {
@@ -48,6 +60,7 @@ struct Inputs {
   DESERT_HD float echo_value(int i) const { return value_if_present(echo, i); }
   DESERT_HD bool solid(int i) const { return value_if_present(obstacle, i) > 0.0f; }
   DESERT_HD float moisture(int i) const { return bare ? 0.0f : relative_moisture(i); }
+  DESERT_HD float dryness(float m) const { return bare ? 1.0f : dryness_of(m); }
   DESERT_HD bool flooded(int i) const { return value_if_present(water, i) * quantum > wet_depth; }
 };
 
@@ -65,6 +78,8 @@ inline abrasion::Abrade abrade_for(const TerrainView& t, const AbrasionParameter
                                    LedgerView ledger) {
   return {a.rate * time,
           a.rate_of_soil() * time,
+          1.0f / a.moisture_cutoff,
+          a.most_bouncing,
           to_quanta_at_most(a.cover, t.quanta_per_metre, wall_height),
           t.quantum,
           t.quanta_per_metre,

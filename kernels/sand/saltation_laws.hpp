@@ -26,10 +26,10 @@ struct Lift {
     const float speed_squared = u * u + v * v;
     if (lying <= 0 || !(speed_squared > 0.0f)) return 0.0f;
     if (speed_squared < p.threshold_speed * p.threshold_speed) return 0.0f;
-    const float wet = flooded ? 0.0f : dryness(moisture);
-    const float metres =
-        in.hop_time * (p.lift * (1.0f - shadow) * (1.0f - plants) * (echo > 0.0f ? 0.5f : 1.0f) * wet +
-                       (echo < 0.0f ? -echo : 0.0f));
+    const float wet = flooded ? 0.0f : in.dryness(moisture);
+    const float metres = in.hop_time * (p.lift * (1.0f - shadow) * (1.0f - plants) *
+                                            (echo > 0.0f ? in.sticky_lift : 1.0f) * wet +
+                                        (echo < 0.0f ? -echo : 0.0f));
     return minimum(metres * in.quanta_per_metre, static_cast<float>(lying));
   }
 };
@@ -203,7 +203,8 @@ struct DepositedShare {
     const float bounce = sandy ? p.bounce_on_sand
                                : (in.value_if_present(in.soil, i) > 0 ? p.bounce_on_soil : p.bounce_on_rock);
     const float deposited_share = maximum((1.0f - bounce) + v * bounce, maximum(shadow, r_e));
-    const float wet = in.flooded(i) ? 0.01f : maximum(dryness(m), 0.01f);
+    const float damp = in.flooded(i) ? p.least_deposit : maximum(in.dryness(m), p.least_deposit);
+    const float wet = bare ? 1.0f : damp;
     return clamp(deposited_share, 0.0f, 1.0f) * wet;
   }
 };

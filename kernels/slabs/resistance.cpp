@@ -35,9 +35,12 @@ void change_resistance(E& exec, const TerrainView& t, const StepInputs& in) {
                              t.quantum,
                              t.quanta(Layer::burial)});
   if (in.kind == SlabKind::snow && in.settlings > 0) {
-    const double rate = 2.777e-6 * std::exp(0.04 * static_cast<double>(in.snow.temperature));
+    const double rate =
+        in.snow.settling_rate * std::exp(in.snow.settling_warmth * static_cast<double>(in.snow.temperature));
     for_each_cell(exec, t.grid,
-                  SettleSnow{t.grid, static_cast<float>(rate * in.settlings * in.snow.settling_time),
+                  SettleSnow{t.grid,
+                             {in.snow.loose_density, in.snow.stiffening},
+                             static_cast<float>(rate * in.settlings * in.snow.settling_time),
                              t.real(Layer::snow_density)});
   }
 }

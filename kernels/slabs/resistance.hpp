@@ -16,10 +16,11 @@
 ///
 /// and settles by Anderson 1976, as in Jordan 1991 (c3, c4: there the coefficients of settling),
 ///
-///   (1/ρ) dρ/dt = c3 exp(c4 T) · exp(−0.046 (ρ − 150))    the last only above 150 kg/m³
+///   (1/ρ) dρ/dt = c3 exp(c4 T) · exp(−v (ρ − ρ_l))    the last only above ρ_l
 ///
-/// T: its temperature [°C], c3 = 2.777e-6 1/s, c4 = 0.04 1/K. Blown snow takes on the density of the cell
-/// that it comes to.
+/// T: its temperature [°C], c3 = `settling_rate`, c4 = `settling_warmth`, v = `stiffening`,
+/// ρ_l = `loose_density`. The three numbers of ρ_fresh have no parameters: they are one fit to measurements.
+/// Blown snow takes on the density of the cell that it comes to.
 
 #include "kernels/field/layers.hpp"
 #include "kernels/slabs/growth_curves.hpp"
@@ -79,23 +80,29 @@ struct GrowPlants {
   }
 };
 
-/// The settling of snow with x = c3 exp(c4 T) Δt. Below 150 kg/m³ it is exact; above, with v = 0.046 m³/kg
-/// and ρ of its beginning in dρ/dt, e^(v (ρ − 150)) grows by v ρ x.
-struct SettleSnow {
-  Grid grid;
-  float settling;  ///< x
-  float* density;  ///< [kg/m³]
+/// The density of snow after x = c3 exp(c4 T) Δt. Below ρ_l it is exact; above, with ρ of its beginning in
+/// dρ/dt, e^(v (ρ − ρ_l)) grows by v ρ x.
+struct SettledSnow {
+  float loose, slowing;  ///< ρ_l [kg/m³], v [m³/kg]
 
-  static constexpr float loose = 150.0f, slowing = 0.046f, least = 1.0f;
+  static constexpr float least = 1.0f;  ///< there is no snow so light [kg/m³]
 
-  DESERT_HD static float settled(float density, float x) {
-    if (density < least) return density;  // there is no snow so light
+  DESERT_HD float operator()(float density, float x) const {
+    if (density < least) return density;
     const float until_loose = density < loose ? logarithm(loose / density) : 0.0f;
     if (x < until_loose) return density / exp_negative(x);
     const float from = maximum(density, loose);
-    const float slow = exp_negative(slowing * (from - loose));  // 1 / e^(v (ρ − 150))
+    const float slow = exp_negative(slowing * (from - loose));  // 1 / e^(v (ρ − ρ_l))
     return from + logarithm(1.0f + slow * slowing * from * (x - until_loose)) / slowing;
   }
+};
+
+struct SettleSnow {
+  Grid grid;
+  SettledSnow settled;
+  float settling;  ///< x
+  float* density;  ///< [kg/m³]
+
   DESERT_HD void operator()(int x, int y) const {
     const int i = grid.index(x, y);
     density[i] = minimum(settled(density[i], settling), ice);

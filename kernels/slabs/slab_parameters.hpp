@@ -79,6 +79,10 @@ struct SlabSnowParameters {
   float fall_temperature = -20.0f;
   float packed_density = 250.7f;
   float settling_time = 86400.0f;
+  float loose_density = 150.0f;
+  float stiffening = 0.046f;
+  double settling_rate = 2.777e-6;
+  double settling_warmth = 0.04;
 };
 
 constexpr auto parameter_table(const SlabSnowParameters*) {
@@ -91,7 +95,15 @@ constexpr auto parameter_table(const SlabSnowParameters*) {
       parameter("packed_density", &P::packed_density, 130, 917, "kg/m^3",
                 "Density from which the wind moves no more snow."),
       parameter("settling_time", &P::settling_time, 60, 1e7, "s",
-                "Time after which the density is computed anew."));
+                "Time after which the density is computed anew."),
+      parameter("loose_density", &P::loose_density, 10, 917, "kg/m^3",
+                "Density beyond which snow settles more slowly (Anderson 1976)."),
+      parameter("stiffening", &P::stiffening, 0.001, 1, "m^3/kg",
+                "How much more slowly beyond it: by e^(-stiffening times the excess) (Anderson 1976)."),
+      parameter("settling_rate", &P::settling_rate, 0, 1, "1/s",
+                "Share by which loose snow at 0 degC becomes denser a second (Anderson 1976: c3)."),
+      parameter("settling_warmth", &P::settling_warmth, 0, 10, "1/K",
+                "How much faster warm snow settles: by e^(settling_warmth T) (Anderson 1976: c4)."));
 }
 static_assert(table_is_complete<SlabSnowParameters>());
 

@@ -13,16 +13,20 @@ namespace desert_sim::moisture {
 /// Capacity and seepage rate of the ground.
 struct Ground {
   const Quanta *soil, *sand;
-  float capacity, quantum, quanta_per_metre;
+  float capacity, deepest, per_deepest;  ///< c_M, d_M, 1/d_M
+  float quantum, quanta_per_metre;
   MoistureParameters p;
 
   /// Moisture that the ground can hold, C [quanta].
   DESERT_HD Quanta capacity_quanta(int i) const {
     const float depth = static_cast<float>(value_or_zero(soil, i) + sand[i]) * quantum;
-    return static_cast<Quanta>(capacity * minimum(depth, 1.0f) * quanta_per_metre);
+    return static_cast<Quanta>(capacity * minimum(depth, deepest) * quanta_per_metre);
+  }
+  DESERT_HD bool wet(Quanta moisture, Quanta full) const {
+    return static_cast<float>(moisture) > p.wet_from * static_cast<float>(full);
   }
   DESERT_HD float rate(int i) const {
-    return lerp(p.seepage_soil, p.seepage_sand, minimum(sand[i] * quantum, 1.0f));
+    return lerp(p.seepage_soil, p.seepage_sand, minimum(sand[i] * quantum * per_deepest, 1.0f));
   }
 };
 
@@ -43,8 +47,8 @@ struct SeepAndDry {
     const float rate = ground.rate(i);
     Quanta in = capacity - moisture_before;  // negative: the excess re-emerges
     if (in > 0) {
-      const float part = rate * time_step *
-                         (2 * static_cast<long long>(moisture_before) > capacity ? ground.p.when_wet : 1.0f);
+      const float part =
+          rate * time_step * (ground.wet(moisture_before, capacity) ? ground.p.when_wet : 1.0f);
       const Quanta wanted = seepage_die.whole_at_most(part * static_cast<float>(in), in, i);
       in = wanted < standing ? wanted : standing;
       ledger.convert(Material::water, Material::moisture, i, in);
@@ -55,7 +59,8 @@ struct SeepAndDry {
     water[i] = standing - in;
     Quanta dried = 0;
     if (!((standing - in) * ground.quantum > wet_depth)) {
-      const float speed = ground.p.evaporation * rate * (1.0f - 0.75f * value_or_zero(vegetation, i));
+      const float speed =
+          ground.p.evaporation * rate * (1.0f - ground.p.plant_hold * value_or_zero(vegetation, i));
       dried = evaporation_die.whole_at_most(lost_share(speed * time_step) * static_cast<float>(wet), wet, i);
       ledger.book_out(Material::moisture, i, dried);
     }
@@ -110,8 +115,14 @@ struct ApplyDiffusion {
 template <class E>
 void step(E& exec, const TerrainView& t, const MoistureParameters& p, const StepInputs& in, const Dice& dice,
           LedgerView ledger) {
-  const Ground ground{
-      t.quanta(Layer::soil), t.quanta(Layer::sand), in.capacity, t.quantum, t.quanta_per_metre, p};
+  const Ground ground{t.quanta(Layer::soil),
+                      t.quanta(Layer::sand),
+                      in.repose.moisture_capacity,
+                      in.repose.moisture_depth,
+                      1.0f / in.repose.moisture_depth,
+                      t.quantum,
+                      t.quanta_per_metre,
+                      p};
   Quanta *water = t.quanta(Layer::water), *moisture = t.quanta(Layer::moisture);
   for_each_cell(exec, t.grid,
                 SeepAndDry{t.grid, ground, in.time_step, dice[Roll::seepage], dice[Roll::ground_evaporation],

@@ -13,6 +13,7 @@ struct ConvertSoilAndSand {
   Grid grid;
   SoilParameters p;
   float time_step, quantum, quanta_per_metre;
+  float per_cover;  ///< 1/s_c [1/m]
   Die drying_die, forming_die;
   repose::RelativeMoisture relative_moisture;
   const float* vegetation;
@@ -25,7 +26,7 @@ struct ConvertSoilAndSand {
   DESERT_HD void operator()(int x, int y) const {
     const int i = grid.index(x, y);
     const float m = relative_moisture(i), v = value_or_zero(vegetation, i), s = sand[i] * quantum;
-    const float drying_factor = maximum(1.0f - m / p.dry, 0.0f) * exp_negative(10.0f * maximum(s, 0.0f));
+    const float drying_factor = maximum(1.0f - m / p.dry, 0.0f) * exp_negative(per_cover * maximum(s, 0.0f));
     const Quanta dried = drying_die.whole_at_most(
         p.drying * time_step * (1.0f - v) * drying_factor * quanta_per_metre, soil[i], i);
     const Quanta fertile = humus ? (humus[i] < sand[i] ? humus[i] : sand[i]) : 0;
@@ -42,11 +43,12 @@ struct ConvertSoilAndSand {
 template <class E>
 void step(E& exec, const TerrainView& t, const SoilParameters& p, const ReposeParameters& repose,
           float time_step, const Dice& dice, LedgerView ledger) {
-  for_each_cell(exec, t.grid,
-                ConvertSoilAndSand{
-                    t.grid, p, time_step, t.quantum, t.quanta_per_metre, dice[Roll::soil_drying],
-                    dice[Roll::soil_forming], repose::RelativeMoisture(t, repose), t.real(Layer::vegetation),
-                    t.quanta(Layer::soil), t.quanta(Layer::sand), t.quanta(Layer::humus), ledger});
+  for_each_cell(
+      exec, t.grid,
+      ConvertSoilAndSand{t.grid, p, time_step, t.quantum, t.quanta_per_metre, 1.0f / p.cover,
+                         dice[Roll::soil_drying], dice[Roll::soil_forming],
+                         repose::RelativeMoisture(t, repose), t.real(Layer::vegetation),
+                         t.quanta(Layer::soil), t.quanta(Layer::sand), t.quanta(Layer::humus), ledger});
 }
 
 template void step(Backend&, const TerrainView&, const SoilParameters&, const ReposeParameters&, float,

@@ -10,12 +10,11 @@
 
 namespace desert_sim::face_flow {
 
-constexpr float gravity = 9.81f;  ///< [m/s²]
-
 /// The fields that the laws of the flow share.
 struct FlowFields {
   Grid grid;
   float time_step, quantum, quanta_per_metre;  ///< time_step: of a sub-step [s]
+  float gravity;                               ///< g [m/s²]
   bool sea;
   bool passes_through;  ///< what comes to an edge in a sub-step may leave in it, however low the edge is
   float most_froude;    ///< of what flows out of a cell; 0: any
@@ -34,7 +33,9 @@ DESERT_HD std::uint32_t sum_of_depths(Quanta a, Quanta b) {
   return static_cast<std::uint32_t>(a) + static_cast<std::uint32_t>(b);
 }
 
-constexpr float film = 1e-4f;  ///< depth up to which water is a film, which has no velocity [m]
+/// Depth up to which water is a film, which has no velocity [m]. No parameter: below it a whole quantum a
+/// step would count as a fast flow.
+constexpr float film = 1e-4f;
 
 /// What four faces may move more than the sum of their amounts, each being rounded to a whole quantum.
 constexpr float rounding_of_faces = 3.0f;

@@ -15,6 +15,7 @@ namespace desert_sim::hydraulic_erosion {
 struct Capacity {
   Grid grid;
   HydraulicErosionParameters p;
+  float shallow_rise;  ///< (1 − a)/d [1/m]
   float quantum;
   const Quanta *bedrock, *soil, *sand, *water;
   const float *velocity_x, *velocity_y, *vegetation;
@@ -34,8 +35,9 @@ struct Capacity {
   DESERT_HD float capacity_at(int i, float slope, float speed) const {
     const float w = water[i] * quantum;
     if (!(w > wet_depth)) return 0.0f;
-    return p.capacity * maximum(slope, p.least_slope) * speed * (1.0f - 0.5f * value_or_zero(vegetation, i)) *
-           (minimum(0.1f + 0.9f * w, 1.0f) * exp_negative(w / p.deep));
+    return p.capacity * maximum(slope, p.least_slope) * speed *
+           (1.0f - p.plant_hold * value_or_zero(vegetation, i)) *
+           (minimum(p.shallow_share + shallow_rise * w, 1.0f) * exp_negative(w / p.deep));
   }
 
   DESERT_HD void operator()(int x, int y) const {
@@ -69,7 +71,7 @@ struct Exchange {
     return worn;
   }
   DESERT_HD Quanta deposit_sediment(int i, Quanta carried, float metres, bool dry) const {
-    const float rate = p.deposit * (1.0f + value_or_zero(vegetation, i));
+    const float rate = p.deposit * (1.0f + p.plant_trap * value_or_zero(vegetation, i));
     const Quanta fallen = dry ? carried : exchanged(rate, metres, carried, settling_die, i);
     sand[i] += fallen;
     ledger.convert(Material::sediment, Material::sand, i, fallen);
@@ -104,8 +106,9 @@ void step(E& exec, const TerrainView& t, const HydraulicErosionParameters& p, fl
   const Quanta* water = t.quanta(Layer::water);
   const float* vegetation = t.real(Layer::vegetation);
   for_each_cell(exec, t.grid,
-                Capacity{t.grid, p, t.quantum, bedrock, soil, sand, water, t.real(Layer::water_velocity_x),
-                         t.real(Layer::water_velocity_y), vegetation, work.capacity.data()});
+                Capacity{t.grid, p, (1.0f - p.shallow_share) / p.shallow_depth, t.quantum, bedrock, soil,
+                         sand, water, t.real(Layer::water_velocity_x), t.real(Layer::water_velocity_y),
+                         vegetation, work.capacity.data()});
   for_each_cell(exec, t.grid,
                 Exchange{t.grid, p, time_step, t.quantum, t.quanta_per_metre, dice[Roll::dissolving],
                          dice[Roll::settling], work.capacity.data(), vegetation,

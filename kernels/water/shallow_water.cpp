@@ -41,7 +41,7 @@ struct Face {
     const float before = behind < 0 ? 0.0f : 0.5f * (upstream - static_cast<float>(behind) * flow.quantum);
     const float least = ahead * before > 0.0f ? (fabsf(ahead) < fabsf(before) ? ahead : before) : 0.0f;
     const float most = 0.25f * upstream, half = clamp(ahead, -most, most);
-    const float slow = maximum(1.0f - fabsf(velocity) / sqrtf(gravity * (wet ? upstream : 1.0f)), 0.0f);
+    const float slow = maximum(1.0f - fabsf(velocity) / sqrtf(flow.gravity * (wet ? upstream : 1.0f)), 0.0f);
     return wet ? upstream + (slow * half + (1.0f - slow) * least) : upstream;
   }
 };
@@ -77,7 +77,7 @@ struct Speed {
     const float depth = static_cast<float>(flow.water[i]) * flow.quantum;
     const float u = maximum(fabsf(velocity_x[i]), west >= 0 ? fabsf(velocity_x[west]) : 0.0f);
     const float v = maximum(fabsf(velocity_y[i]), south >= 0 ? fabsf(velocity_y[south]) : 0.0f);
-    return sqrtf(2.0f * gravity * depth) + (u + v);
+    return sqrtf(2.0f * flow.gravity * depth) + (u + v);
   }
 };
 
@@ -135,7 +135,7 @@ struct Accelerate {
   DESERT_HD Moved accelerated(const Face<inside>& face, const Inflow& in, int behind, int i, int j, int ahead,
                               float own, const float* wind) const {
     const float l = flow.grid.cell_size, dt = flow.time_step;
-    float pull = face.level() ? 0.0f : gravity * (static_cast<float>(face.drop) * flow.quantum / l);
+    float pull = face.level() ? 0.0f : flow.gravity * (static_cast<float>(face.drop) * flow.quantum / l);
     if (waves.strength > 0.0f) pull += waves.pull(flow, i, j, wind);
     float mean =
         0.5f * (static_cast<float>(flow.water[i]) + static_cast<float>(flow.water[j])) * flow.quantum;

@@ -25,7 +25,7 @@ constexpr float margin = 0.8f;
 /// The greatest depth [m] that is stable with a sub-step: a wave from cell to cell changes by
 /// λ² − (1 + f − K) λ + f = 0, K = 8 g h Δt²/l², in a sub-step, where f = 1 − c Δt is what friction leaves of
 /// a flux; |λ| ≤ 1 where K ≤ 2 (1 + f).
-inline float deepest_stable(float l, float part, float friction_factor) {
+inline float deepest_stable(float gravity, float l, float part, float friction_factor) {
   return (1.0f + friction_factor) * (l * l) / (4.0f * gravity * part * part);
 }
 
@@ -47,7 +47,8 @@ struct Accelerate {
     const float face = minimum(static_cast<float>(top - bed), highest_face) * flow.quantum;
     const Quanta drop = top_i - top_j;
     const bool level = drop <= 1 && drop >= -1;
-    float pull = level ? 0.0f : gravity * (static_cast<float>(drop) * flow.quantum / flow.grid.cell_size);
+    float pull =
+        level ? 0.0f : flow.gravity * (static_cast<float>(drop) * flow.quantum / flow.grid.cell_size);
     if (waves.strength > 0.0f) pull += waves.pull(flow, i, j, wind);
     const float limited_flux =
         first ? flux : flux * (flux > 0.0f ? flow.supply_share[i] : flow.supply_share[j]);
@@ -98,8 +99,9 @@ struct DepthOfSubsteps {
 };
 
 /// Number of sub-steps that water of this depth [m] needs in a step.
-inline double substeps(const Grid& grid, float time_step, double depth) {
-  const double longest = safety * grid.cell_size / std::sqrt(2.0 * gravity * depth + 1e-12);
+inline double substeps(const Grid& grid, float gravity, float time_step, double depth) {
+  const double longest =
+      safety * grid.cell_size / std::sqrt(2.0 * static_cast<double>(gravity) * depth + 1e-12);
   return std::fmax(std::ceil(time_step / longest), 1.0);
 }
 
@@ -113,11 +115,11 @@ void step(E& exec, const TerrainView& t, const WaterParameters& p, const StepInp
   flow.time_step = in.time_step;
   const double depth =
       static_cast<double>(max_cells(exec, t.grid, DepthOfSubsteps{Flow<false>(flow)})) * t.quantum;
-  work.substeps = {depth, substeps(t.grid, in.time_step, depth), in.time_step};
+  work.substeps = {depth, substeps(t.grid, p.gravity, in.time_step, depth), in.time_step};
   const int parts = static_cast<int>(std::fmin(work.substeps.needed, p.most_substeps));
   const float part = in.time_step / static_cast<float>(parts);
   const float friction_factor = maximum(1.0f - p.friction * part, 0.0f);
-  const float highest = margin * deepest_stable(t.grid.cell_size, part, friction_factor);
+  const float highest = margin * deepest_stable(p.gravity, t.grid.cell_size, part, friction_factor);
   for (int n = 0; n < parts; ++n) {
     const std::uint64_t turn = in.tick * static_cast<std::uint64_t>(parts) + static_cast<std::uint64_t>(n);
     begin_substep(flow, part, in.seed, turn);

@@ -40,10 +40,12 @@ struct Substeps {
   double needed = 1;    ///< more than were taken if the step had too few
   float time_step = 0;  ///< that they divide [s]
 };
-/// Streams near froude_limit need sub-steps as if they were so much deeper.
+/// Streams near froude_limit need sub-steps as if they were so much deeper. No parameter: it belongs to
+/// froude_limit and to the scheme's stability.
 constexpr float stream_depth = 1.69f;
 
-/// |u|/√(g w) of what flows out of a cell to its neighbours, at most.
+/// |u|/√(g w) of what flows out of a cell to its neighbours, at most. No parameter: it is where pipes, which
+/// carry no momentum, break into pulses; shallow_water has no such limit.
 constexpr float froude_limit = 2.0f / 3;
 
 struct Workspace {

@@ -4,13 +4,14 @@
 ///
 ///   depth      w += Δt (Σ q_in − Σ q_out)/l²,   where a cell's outflow is limited to its water
 ///   velocity   U_x = ½(q_west + q_east)/(l w),   U_y = ½(q_south + q_north)/(l w)
-///   waves      a_wave = s (1 − e^(−½ · 0.01 (w_i + w_j)²)) max(sin 2π t/T, 0) · ½(u_i + u_j)
+///   waves      a_wave = s (1 − e^(−½ (w/d)²)) max(sin 2π t/T, 0) · ½(u_i + u_j)
 ///
-/// u is the wind's component along the flux. In the velocity w is the mean depth of the sub-step, and films
-/// have none. Amounts are rounded to quanta by dice that turn regularly (dice.hpp), alike from both sides of
-/// a face, so that none is lost and no flow is too small for a short step; up to three quanta of a cell wait
-/// for more, because four faces may round as much up. Over open edges water leaves as over a sill, at the
-/// speed √(g w) or as fast as it flows through the cell, down to the level of the sea where there is one.
+/// u is the wind's component along the flux. In the waves w is the mean depth of both cells, d =
+/// `wave_depth`; in the velocity it is the mean depth of the sub-step, and films have none. Amounts are
+/// rounded to quanta by dice that turn regularly (dice.hpp), alike from both sides of a face, so that none
+/// is lost and no flow is too small for a short step; up to three quanta of a cell wait for more, because
+/// four faces may round as much up. Over open edges water leaves as over a sill, at the speed √(g w) or as
+/// fast as it flows through the cell, down to the level of the sea where there is one.
 ///
 /// Each sub-step begins and ends with the sea at its level (water_sources.hpp): filled once a step, it would
 /// give less the longer the step is.
@@ -40,13 +41,14 @@ struct StepInputs {
 
 /// Acceleration of the water by the wind.
 struct Waves {
-  float strength;  ///< at the current time: s max(sin 2π t/T, 0) [1/s]
+  float strength;          ///< at the current time: s max(sin 2π t/T, 0) [1/s]
+  float per_depth_square;  ///< 1/(8 d²), of the sum of two depths [1/m²]
   const float *wind_x, *wind_y;
 
   /// [m/s²], between two cells with these depths; `wind`: its component along the flux.
   DESERT_HD float pull(const FlowFields& flow, int i, int j, const float* wind) const {
     const float both = static_cast<float>(sum_of_depths(flow.water[i], flow.water[j])) * flow.quantum;
-    return strength * (1.0f - exp_negative(0.005f * both * both)) * 0.5f * (wind[i] + wind[j]);
+    return strength * (1.0f - exp_negative(per_depth_square * both * both)) * 0.5f * (wind[i] + wind[j]);
   }
 };
 
@@ -54,13 +56,13 @@ struct Waves {
 inline Waves waves_at(double time, const WaterParameters& p, const TerrainView& t) {
   const float swell =
       p.wave_strength * static_cast<float>(std::fmax(std::sin(2 * pi * time / p.wave_period), 0.0));
-  return {swell, t.real(Layer::wind_x), t.real(Layer::wind_y)};
+  return {swell, 0.125f / (p.wave_depth * p.wave_depth), t.real(Layer::wind_x), t.real(Layer::wind_y)};
 }
 
 /// The coefficient of the bed's drag, − c_d |u| u/h: Chézy's c_f, plus Manning's g n²/h^⅓.
 struct BedDrag {
   float chezy, manning;  ///< c_f, g n² [m^⅓]
-  explicit BedDrag(const WaterParameters& p) : chezy(p.drag), manning(gravity * p.manning * p.manning) {}
+  explicit BedDrag(const WaterParameters& p) : chezy(p.drag), manning(p.gravity * p.manning * p.manning) {}
   DESERT_HD float of(float depth) const {
     return manning > 0.0f ? chezy + manning / power(depth, 1.0f / 3.0f) : chezy;
   }
@@ -137,6 +139,7 @@ inline FlowFields flow_fields(const TerrainView& t, const WaterParameters& p, co
   flow.grid = t.grid;
   flow.quantum = t.quantum;
   flow.quanta_per_metre = t.quanta_per_metre;
+  flow.gravity = p.gravity;
   flow.sea = p.sea != Sea::none;
   flow.sea_level = in.sea_level;
   flow.bedrock = t.quanta(Layer::bedrock);

@@ -45,6 +45,8 @@ struct WaterParameters {
   float sea_level = 0.0f;
   float wave_strength = 0.0f;
   float wave_period = 10.0f;
+  float wave_depth = 5.0f;
+  float gravity = 9.81f;
 };
 
 constexpr auto parameter_table(const WaterParameters*) {
@@ -74,7 +76,12 @@ constexpr auto parameter_table(const WaterParameters*) {
       parameter("sea_level", &P::sea_level, -1e6, 1e6, "m", "Elevation of the sea."),
       parameter("wave_strength", &P::wave_strength, 0, 10, "1/s",
                 "Acceleration of deep water by 1 m/s of wind, at a wave's height (c_wave); 0: no waves."),
-      parameter("wave_period", &P::wave_period, 0.01, 1e6, "s", "From wave to wave."));
+      parameter("wave_period", &P::wave_period, 0.01, 1e6, "s", "From wave to wave."),
+      parameter(
+          "wave_depth", &P::wave_depth, 0.01, 1e4, "m",
+          "Depth of water at which waves have 1 - 1/sqrt(e), two fifths, of their strength; none where it "
+          "is 0."),
+      parameter("gravity", &P::gravity, 0.01, 100, "m/s^2", "Gravity (g); 3.71 on Mars."));
 }
 static_assert(table_is_complete<WaterParameters>());
 

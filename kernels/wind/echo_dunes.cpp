@@ -61,7 +61,7 @@ struct Classify {
         echo[i] = -p.erosion_rate;
         return;
       }
-      sticky = maximum(sticky, clamp(1.1f - (distance - lane) / (end - lane), 0.0f, 1.0f));
+      sticky = maximum(sticky, clamp(p.sticky_start - (distance - lane) / (end - lane), 0.0f, 1.0f));
     }
     echo[i] = sticky;
   }

@@ -4,8 +4,8 @@
 ///
 ///   cliff     (h(here) − h(one cell upwind))/l ≥ tan `cliff_deg`,   H = min(rise, `highest`)
 ///   erosion   r_e = −k_e                                       where d ≤ d_e
-///   sticky    r_e = clamp(1.1 − (d − d_e)/(d_s − d_e), 0, 1)   where d_e < d ≤ d_s
-///             d_e = `erosion_reach` H,   d_s = `sticky_reach` H
+///   sticky    r_e = clamp(r_0 − (d − d_e)/(d_s − d_e), 0, 1)   where d_e < d ≤ d_s
+///             d_e = `erosion_reach` H,   d_s = `sticky_reach` H,   r_0 = `sticky_start`
 ///
 /// H is the height of the cliff: its rise from where, upwind of the cell, the ground stops being a cliff. d
 /// is the distance from a cell downwind to the cliff. Where several cliffs lie downwind, erosion has
@@ -25,6 +25,8 @@ struct EchoDuneParameters {
   float erosion_reach = 0.4f;
   float sticky_reach = 2.0f;
   float erosion_rate = 1.0f;
+  float sticky_start = 1.1f;
+  float sticky_lift = 0.5f;
 };
 
 constexpr auto parameter_table(const EchoDuneParameters*) {
@@ -37,7 +39,13 @@ constexpr auto parameter_table(const EchoDuneParameters*) {
                 "Length of the sand-free lane, in heights of the cliff."),
       parameter("sticky_reach", &P::sticky_reach, 0, 20, "1",
                 "How far ahead sand is held, in heights of the cliff."),
-      parameter("erosion_rate", &P::erosion_rate, 0, 10, "m", "Extra sand lifted in the lane a step (k_e)."));
+      parameter("erosion_rate", &P::erosion_rate, 0, 10, "m", "Extra sand lifted in the lane a step (k_e)."),
+      parameter(
+          "sticky_start", &P::sticky_start, 0, 10, "1",
+          "Share of sand that is held at the lane; it falls by 1 to the end of sticky_reach, and above 1 "
+          "all is held (Taylor & Keyser 2023)."),
+      parameter("sticky_lift", &P::sticky_lift, 0, 1, "1",
+                "Share of the lift that is left where sand is held (Taylor & Keyser 2023: 1/2)."));
 }
 static_assert(table_is_complete<EchoDuneParameters>());
 

@@ -12,12 +12,6 @@ namespace desert_sim::shear_stress {
 
 using wind::Downwind;
 
-/// Ground that falls less steeply from a cell on is not in its lee.
-constexpr float lee_slope = 1.0f / 6.0f;
-/// The separated flow has bent down to its steepest after this many times its height above the lee, of which
-/// FindLee sees three quarters behind a slip face.
-constexpr float bend_length = 4.0f;
-
 /// Where the air comes from to a place of a line: between two places of the line before.
 struct Upwind {
   static constexpr int reach = 2;
@@ -229,27 +223,26 @@ struct BlowOverGround {
   }
 };
 
-/// Where the axis is periodic, the sweeps begin this far before the first line: longer bubbles are cut [m].
-constexpr float longest_bubble = 120.0f;
-
+/// Where the axis is periodic, the sweeps begin a longest_bubble before the first line.
 template <class E>
-void fill_bubbles(E& exec, const TerrainView& t, const Downwind& order, wind::Vector along, float tangent,
-                  const surface::Heights& heights, Workspace& work) {
+void fill_bubbles(E& exec, const TerrainView& t, const ShearStressParameters& p, const Downwind& order,
+                  wind::Vector along, float tangent, const surface::Heights& heights, Workspace& work) {
   const float shift = order.shift(along.x, along.y), l = t.grid.cell_size;
   const float line = l * std::sqrt(1.0f + shift * shift);  // from a line to the next [m]
-  const int lines = order.lines(), before = static_cast<int>(std::ceil(longest_bubble / l));
+  const int lines = order.lines(), before = static_cast<int>(std::ceil(p.longest_bubble / l));
   const int first = order.periodic_along() ? -std::min(lines, before) : 0;
   const float *ground = work.ground.data(), *lee = work.lee.data();
   for_each_cell(exec, t.grid, TakeGround{order, heights.cell_heights.data(), work.ground.data()});
   const auto sweep = [&](bool against) {
     return Sweep(order, against, Upwind(to_fixed_point(against ? -shift : shift)));
   };
-  for_each_line_in_turn(exec, first, lines, order.length(), work.lines.data(),
-                        FindLee(sweep(true), lee_slope * line * t.quanta_per_metre, ground, work.lee.data()));
+  for_each_line_in_turn(
+      exec, first, lines, order.length(), work.lines.data(),
+      FindLee(sweep(true), p.lee_slope * line * t.quanta_per_metre, ground, work.lee.data()));
   for_each_line_in_turn(
       exec, first, lines, order.length(), work.lines.data(),
       FillBubbles(sweep(false), tangent * line * t.quanta_per_metre,
-                  bend_length / (line * t.quanta_per_metre), ground, lee, work.filled.data()));
+                  p.bend_length / (line * t.quanta_per_metre), ground, lee, work.filled.data()));
 }
 
 template <class E>
@@ -290,7 +283,7 @@ void step(E& exec, const TerrainView& t, const ShearStressParameters& p, const w
   const auto tangent = static_cast<float>(std::tan(p.separation_deg * pi / 180.0));
   const bool responds = speed > 0.0f && (p.in_phase > 0.0f || p.in_quadrature > 0.0f);
   const Downwind order(t.grid, along);
-  fill_bubbles(exec, t, order, along, tangent, in.heights, work);
+  fill_bubbles(exec, t, p, order, along, tangent, in.heights, work);
   if (responds) respond(exec, t, p, order, along, static_cast<float>(in.reference), work);
   const float per_fall = 1.0f / (tangent * t.grid.cell_size * t.quanta_per_metre);
   const auto blow = [&](auto full) {

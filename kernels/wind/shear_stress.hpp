@@ -9,9 +9,10 @@
 ///   stress        τ   = (τ_0 + τ_∥, τ_⊥) (1 − shelter),   with τ_0 + τ_∥ not below 0
 ///
 /// ∥ and ⊥ are along and across the undisturbed wind. B > 0 sets the largest stress before the crest. h is
-/// the surface with the separation bubbles filled in. Where the lee is steeper than β = `separation_deg`, the
-/// air leaves the ground at the brink with the slope of the brink, which bends down to −tan β over three
-/// times the height H of the brink above its lee, and comes down to the ground with that slope,
+/// the surface with the separation bubbles filled in. Where the lee is steeper than β = `separation_deg`,
+/// the air leaves the ground at the brink with the slope of the brink, which bends down to −tan β over
+/// three times the height H of the brink above its lee (`bend_length`), and comes down to the ground with
+/// that slope,
 ///
 ///   e(s) = max(h(s), e(s − Δs) + e′ Δs),   e″ = −tan β/(3 H),   −tan β ≤ e′ ≤ 0
 ///
@@ -42,7 +43,7 @@ namespace desert_sim {
 
 namespace shear_stress {
 
-/// Von Kármán's constant.
+/// Von Kármán's constant, of turbulence near any wall.
 constexpr double von_karman = 0.41;
 
 /// Shear velocity u_* over flat ground of a wind of 1 m/s at `wind_height` [1].

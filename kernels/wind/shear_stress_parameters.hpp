@@ -12,6 +12,9 @@ struct ShearStressParameters {
   float in_quadrature = 2.0f;
   float separation_deg = 14.0f;
   float stress_cell = 0.0f;
+  float lee_slope = 1.0f / 6.0f;
+  float bend_length = 4.0f;
+  float longest_bubble = 120.0f;
 };
 
 constexpr auto parameter_table(const ShearStressParameters*) {
@@ -29,7 +32,16 @@ constexpr auto parameter_table(const ShearStressParameters*) {
       parameter(
           "stress_cell", &P::stress_cell, 0, 1000, "m",
           "Width of the cells on which the response is computed, if more than that of the terrain's; wider "
-          "ones are faster, but from about half the saturation length on dunes become wider, too."));
+          "ones are faster, but from about half the saturation length on dunes become wider, too."),
+      parameter("lee_slope", &P::lee_slope, 0.01, 1, "1",
+                "Ground that falls less steeply from a brink on is not in its lee."),
+      parameter(
+          "bend_length", &P::bend_length, 0.1, 100, "1",
+          "Length over which the separated flow bends down to its steepest, over the height of the brink "
+          "above its lee, of which three quarters are seen behind a slip face."),
+      parameter(
+          "longest_bubble", &P::longest_bubble, 1, 1e5, "m",
+          "Longest bubble behind a brink that lies across a periodic edge; longer ones are cut there."));
 }
 static_assert(table_is_complete<ShearStressParameters>());
 

@@ -13,10 +13,10 @@
 /// after the first, and reads the wind again at every step. Marches wrap around periodic edges; beyond an
 /// open edge the height of the edge continues.
 ///
-/// Steps shorter than 1 s share the shadow of the second's first one. Dunes depend on this delay as on a
-/// constant of nature: what the wind lifts in a second makes cells that shelter those behind them, from which
-/// dunes grow; where the shadow follows the sand at once, the barchans of config/scenarios run out into
-/// streaks.
+/// Steps shorter than `run.hold_time`, 1 s, share the shadow of the first one of this time. Dunes depend
+/// on this delay as on a constant of nature: what the wind lifts in it makes cells that shelter those
+/// behind them, from which dunes grow; where the shadow follows the sand at once, the barchans of
+/// config/scenarios run out into streaks.
 ///
 /// Reads bedrock, soil, sand and, with plants, canopy_height through `heights`, wind_x, wind_y; writes
 /// wind_shadow. The laws are in wind_shadow_march.hpp.

@@ -23,7 +23,7 @@ std::vector<float> looseness_of(const Snapshot& snapshot) {
                                                                                   : std::vector<float>();
 }
 
-GridGround::Layers layers_of(const Snapshot& s, double moisture_capacity) {
+GridGround::Layers layers_of(const Snapshot& s, double moisture_capacity, double moisture_depth) {
   return {layer_of(s, Layer::elevation),
           layer_of(s, Layer::sand),
           layer_of(s, Layer::soil),
@@ -33,7 +33,8 @@ GridGround::Layers layers_of(const Snapshot& s, double moisture_capacity) {
           layer_of(s, Layer::water),
           layer_of(s, Layer::water_velocity_x),
           layer_of(s, Layer::water_velocity_y),
-          moisture_capacity};
+          moisture_capacity,
+          moisture_depth};
 }
 
 }  // namespace
@@ -56,12 +57,13 @@ GridGround::GridGround(const Geometry& geometry, Layers layers) : g_(geometry), 
   check(layers_.water_y, "water_y", true);
 }
 
-GridGround::GridGround(const Snapshot& s, double moisture_capacity)
+GridGround::GridGround(const Snapshot& s, double moisture_capacity, double moisture_depth)
     : GridGround({s.width, s.height, s.cell_size, s.origin_x, s.origin_y, s.periodic_x, s.periodic_y},
-                 layers_of(s, moisture_capacity)) {}
+                 layers_of(s, moisture_capacity, moisture_depth)) {}
 
-std::unique_ptr<GridGround> GridGround::with_micro_relief(const Snapshot& s, double moisture_capacity) {
-  auto ground = std::make_unique<GridGround>(s, moisture_capacity);
+std::unique_ptr<GridGround> GridGround::with_micro_relief(const Snapshot& s, double moisture_capacity,
+                                                          double moisture_depth) {
+  auto ground = std::make_unique<GridGround>(s, moisture_capacity, moisture_depth);
   ground->micro_relief_ = std::make_unique<MicroRelief>(s);
   return ground;
 }
@@ -122,7 +124,7 @@ GroundPoint GridGround::at(double x, double y) const {
   point.sand_depth = known(layers_.sand_depth);
   if (!layers_.looseness.empty()) point.looseness = known(layers_.looseness);
   point.moisture = relative_moisture(known(layers_.moisture), point.sand_depth + known(layers_.soil_depth),
-                                     layers_.moisture_capacity);
+                                     layers_.moisture_capacity, layers_.moisture_depth);
   point.obstacle = cell_value(layers_.obstacle, x, y);
   point.water = known(layers_.water);
   if (point.water > 0) {

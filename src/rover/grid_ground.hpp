@@ -23,15 +23,17 @@ class GridGround : public GroundSource {
     std::vector<float> elevation, sand_depth, soil_depth, looseness, moisture, obstacle, water, water_x,
         water_y;
     double moisture_capacity = 0.3;  ///< of a metre of ground [m]
+    double moisture_depth = 1;       ///< down to which ground holds it [m]
   };
 
   /// Throws ConfigError for an array of the wrong size.
   GridGround(const Geometry& geometry, Layers layers);
   /// Of a snapshot, as far as it has the layers. It must have the elevation. Looseness is not known where it
   /// is 0 everywhere.
-  GridGround(const Snapshot& snapshot, double moisture_capacity);
+  GridGround(const Snapshot& snapshot, double moisture_capacity, double moisture_depth = 1);
   /// Likewise, with ripples and bumps on the elevation; the snapshot must be of all rows.
-  static std::unique_ptr<GridGround> with_micro_relief(const Snapshot& snapshot, double moisture_capacity);
+  static std::unique_ptr<GridGround> with_micro_relief(const Snapshot& snapshot, double moisture_capacity,
+                                                       double moisture_depth = 1);
   /// The layers that a snapshot for a rover needs, whether its ground has micro_relief or not.
   static std::vector<Layer> layers_of_snapshot(bool micro_relief = false);
 

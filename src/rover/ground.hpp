@@ -37,10 +37,10 @@ class GroundSource {
 };
 
 /// Moisture over what the ground can hold, as in kernels/sand/repose.hpp: `moisture` [m] in `depth` [m] of
-/// sand and soil, `capacity` the moisture of a metre of it.
-inline double relative_moisture(double moisture, double depth, double capacity) {
+/// sand and soil, `capacity` the moisture of a metre of it, `deepest` the depth down to which it holds any.
+inline double relative_moisture(double moisture, double depth, double capacity, double deepest = 1) {
   if (!(moisture > 0)) return 0;
-  const double held = capacity * (depth < 1 ? (depth > 1e-3 ? depth : 1e-3) : 1);
+  const double held = capacity * (depth < deepest ? (depth > 1e-3 ? depth : 1e-3) : deepest);
   return moisture < held ? moisture / held : 1;
 }
 

@@ -19,9 +19,10 @@ const GroundSource& SimulatedGround::at(std::uint64_t step) {
   while (session_->simulation().state().steps < step) session_->step();
   const auto snapshot =
       session_->simulation().views().snapshot(GridGround::layers_of_snapshot(micro_relief_));
-  const double capacity = scenario_.get<ReposeParameters>().moisture_capacity;
-  ground_ = micro_relief_ ? GridGround::with_micro_relief(*snapshot, capacity)
-                          : std::make_unique<GridGround>(*snapshot, capacity);
+  const ReposeParameters& repose = scenario_.get<ReposeParameters>();
+  const double capacity = repose.moisture_capacity, depth = repose.moisture_depth;
+  ground_ = micro_relief_ ? GridGround::with_micro_relief(*snapshot, capacity, depth)
+                          : std::make_unique<GridGround>(*snapshot, capacity, depth);
   step_ = step;
   return *ground_;
 }

@@ -95,7 +95,7 @@ std::string describe_parameters() {
   for (const FixedParameter& fixed : fixed_parameters)
     out << "- `" << fixed.path << "`: " << fixed.reason << ".\n";
   out << "\nAll else can: `dynamic_reconfigure`, `~reload_parameters`.\n";
-  constexpr const char* kinds[] = {"persistent", "held for a second", "derived", "on request"};
+  constexpr const char* kinds[] = {"persistent", "held for run.hold_time", "derived", "on request"};
   out << "\n## Layers\n\n| layer | unit | kind | what |\n|---|---|---|---|\n";
   for (const LayerInfo& layer : layer_table)
     out << "| `" << layer.name << "` | " << layer.unit << " | " << kinds[static_cast<int>(layer.lifetime)]

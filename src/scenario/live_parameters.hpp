@@ -19,6 +19,7 @@ constexpr FixedParameter fixed_parameters[] = {
     {"grid", "the layers are allocated for this grid"},
     {"terrain", "it describes the initial terrain"},
     {"vegetation.max_plants", "the memory of the plants is allocated for this number"},
+    {"vegetation.largest_plant", "the look-up of plants is made for this radius"},
     {"run.steps", "it is the length of a headless run"},
     {"run.duration", "it is the length of a headless run"},
     {"run.start_from", "it is the start of a simulation"},

@@ -66,6 +66,7 @@ struct RunParameters {
   int steps = 1000;
   double duration = 0;
   float time_step = 1.0f;
+  float hold_time = 1.0f;
   float acceleration = 0.0f;
   int check_every = 100;
   std::string start_from;
@@ -73,19 +74,23 @@ struct RunParameters {
 
 constexpr auto parameter_table(const RunParameters*) {
   using P = RunParameters;
-  return std::make_tuple(parameter("steps", &P::steps, 0, 2147483647, "1", "Steps of a headless run."),
-                         parameter("duration", &P::duration, 0, 1e12, "s",
-                                   "Simulated time of a headless run, which then takes as many steps as it "
-                                   "needs; 0: run.steps counts."),
-                         parameter("time_step", &P::time_step, 1e-4, 1e5, "s", "Simulated time of one step."),
-                         parameter("acceleration", &P::acceleration, 0, 1e6, "1",
-                                   "Simulated seconds per second of ROS time: the node makes acceleration / "
-                                   "time_step steps per second; 0: its parameter step_rate says how many."),
-                         parameter("check_every", &P::check_every, 0, 1000000, "steps",
-                                   "How often the state is searched for NaN and negative depths; 0 never."),
-                         parameter("start_from", &P::start_from,
-                                   "Checkpoint that has the start in place of terrain steps: layers, plants, "
-                                   "clock, wind. ~save_scenario writes both; the grid must be the same."));
+  return std::make_tuple(
+      parameter("steps", &P::steps, 0, 2147483647, "1", "Steps of a headless run."),
+      parameter("duration", &P::duration, 0, 1e12, "s",
+                "Simulated time of a headless run, which then takes as many steps as it "
+                "needs; 0: run.steps counts."),
+      parameter("time_step", &P::time_step, 1e-4, 1e5, "s", "Simulated time of one step."),
+      parameter("hold_time", &P::hold_time, 0, 1e6, "s",
+                "Time for which the wind shadow is held: steps that are shorter share that "
+                "of the first of them; 0: each has its own."),
+      parameter("acceleration", &P::acceleration, 0, 1e6, "1",
+                "Simulated seconds per second of ROS time: the node makes acceleration / "
+                "time_step steps per second; 0: its parameter step_rate says how many."),
+      parameter("check_every", &P::check_every, 0, 1000000, "steps",
+                "How often the state is searched for NaN and negative depths; 0 never."),
+      parameter("start_from", &P::start_from,
+                "Checkpoint that has the start in place of terrain steps: layers, plants, clock, wind. "
+                "~save_scenario writes both; the grid must be the same."));
 }
 static_assert(table_is_complete<RunParameters>());
 

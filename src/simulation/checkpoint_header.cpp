@@ -269,7 +269,8 @@ void read_layers(const YAML::Node& list, ValidationErrors& errors, CheckpointHea
                                   [&](const LayerInfo& layer) { return name == layer.name; });
     const std::string key = "layers." + std::to_string(n);
     const auto is_held = [&] {
-      return row->lifetime == Lifetime::held && header.scenario.run.time_step < held_for &&
+      return row->lifetime == Lifetime::held &&
+             header.scenario.run.time_step < header.scenario.run.hold_time &&
              is_written(row->layer, header.scenario);
     };
     if (row == layer_table.end() || (row->lifetime != Lifetime::persistent && !is_held()))

@@ -107,7 +107,7 @@ void check_plants(const CheckpointHeader& header, const WordsInFile& words, cons
       {{0, static_cast<double>(grid.width) * grid.cell_size, "m"},
        {0, static_cast<double>(grid.height) * grid.cell_size, "m"},
        {-highest_quanta, highest_quanta, "quanta"},
-       {0, largest_plant, "m"},
+       {0, header.scenario.get<VegetationParameters>().largest_plant, "m"},
        {least, 1, "1"},
        {0, any, "m^3"},
        {0, any, "s"},

@@ -74,7 +74,8 @@ class Desert {
   void skip() { session_.step(); }
   void look() {
     snapshot_ = session_.simulation().views().snapshot(layers_);
-    ground_ = std::make_unique<GridGround>(*snapshot_, scenario_.get<ReposeParameters>().moisture_capacity);
+    ground_ = std::make_unique<GridGround>(*snapshot_, scenario_.get<ReposeParameters>().moisture_capacity,
+                                           scenario_.get<ReposeParameters>().moisture_depth);
   }
   GridFrame frame() const {
     return {snapshot_->width, snapshot_->height, snapshot_->cell_size, snapshot_->origin_x,

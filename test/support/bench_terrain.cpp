@@ -111,10 +111,11 @@ void BenchTerrain::echo(const EchoDuneParameters& p) {
 }
 
 void BenchTerrain::saltation(const SaltationParameters& p, const AbrasionParameters& a,
-                             const ReposeParameters& r, float time_step) {
+                             const ReposeParameters& r, float time_step, const EchoDuneParameters& echo) {
   with_backend(exec(), [&](auto& e) {
     const reptation::Angle angle({}, r, repose.data());
-    const saltation::StepInputs in{p, a, r, time_step, time_step, landed.data(), {angle, strength.data()}};
+    const saltation::StepInputs in{
+        p, a, r, echo, time_step, time_step, landed.data(), {angle, strength.data()}};
     saltation::step(e, terrain.view(), in, roll_dice(), ledger());
   });
 }
@@ -179,10 +180,13 @@ void BenchTerrain::erode(const HydraulicErosionParameters& p, float time_step) {
   exec().synchronise();
 }
 
-void BenchTerrain::soak(const MoistureParameters& p, float capacity, float time_step) {
+void BenchTerrain::soak(const MoistureParameters& p, float capacity, float time_step, float depth) {
+  ReposeParameters r;
+  r.moisture_capacity = capacity;
+  r.moisture_depth = depth;
   for (Layer layer : {Layer::water, Layer::moisture}) terrain.allocate(layer);
   with_backend(exec(), [&](auto& e) {
-    moisture::step(e, terrain.view(), p, {time_step, capacity, landed.data()}, roll_dice(), ledger());
+    moisture::step(e, terrain.view(), p, {time_step, r, landed.data()}, roll_dice(), ledger());
   });
 }
 

@@ -73,7 +73,7 @@ class BenchTerrain {
   void judge(const TraversabilityParameters& p = {});
   void echo(const EchoDuneParameters& p);
   void saltation(const SaltationParameters& p = {}, const AbrasionParameters& a = {},
-                 const ReposeParameters& r = {}, float time_step = 1);
+                 const ReposeParameters& r = {}, float time_step = 1, const EchoDuneParameters& echo = {});
   void reptation(const ReptationParameters& p = {}, const ReposeParameters& r = {}, float time_step = 1,
                  std::uint64_t tick = 0);
   /// With the tangents in `repose`; returns the sweeps it took.
@@ -83,7 +83,7 @@ class BenchTerrain {
   /// Water flows for `time_step` from `time` on; brings what it needs into use.
   void flow(const WaterParameters& p, float time_step, double time = 0, Quanta sea_level = 0);
   void erode(const HydraulicErosionParameters& p, float time_step = 1);
-  void soak(const MoistureParameters& p, float capacity = 0.3f, float time_step = 1);
+  void soak(const MoistureParameters& p, float capacity = 0.3f, float time_step = 1, float depth = 1);
   void develop_soil(const SoilParameters& p, const ReposeParameters& r = {}, float time_step = 1);
   void blow(const WindParameters& p, wind::Vector above, Quanta reference = 0);
   void evaporate(float rate, float time_step = 1);

@@ -38,7 +38,8 @@ PlantBench::PlantBench(Exec& exec, int width, int height, std::vector<SpeciesTra
                        double cell_size, bool periodic, int capacity, std::vector<float> competition)
     : terrain(exec, width, height, cell_size, periodic),
       work(plants::make_workspace(exec, terrain.grid(), capacity > 0 ? capacity : terrain.grid().cells(),
-                                  species, competition.empty() ? all_ones(species.size()) : competition)) {
+                                  VegetationParameters().largest_plant, species,
+                                  competition.empty() ? all_ones(species.size()) : competition)) {
   for (Layer layer : {Layer::vegetation, Layer::humus, Layer::canopy_height, Layer::illumination,
                       Layer::illumination_canopy})
     terrain.terrain.allocate(layer);

@@ -27,7 +27,8 @@ int species_index(const command::EditPlants& edit, const Scenario& s) {
 /// The region in metres from the grid's corner.
 class Region {
  public:
-  Region(const command::EditPlants& edit, const Scenario& s) : lookup_(s.make_grid()) {
+  Region(const command::EditPlants& edit, const Scenario& s)
+      : lookup_(s.make_grid(), s.get<VegetationParameters>().largest_plant) {
     const bool circle = edit.shape == BrushShape::circle;
     const wind::Vector axis = circle ? wind::Vector{1, 0} : unit_vector(edit.angle_deg);
     double x = edit.x, y = edit.y;

@@ -43,12 +43,13 @@ struct StepContext {
     return state.clock_origin.time +
            static_cast<double>(tick - state.clock_origin.tick) * state.scenario.run.time_step / parts;
   }
-  /// Whether a second begins, for which layers are held, or there are none yet.
+  /// Whether a time begins for which layers are held, or there are none yet.
   bool renews_held_layers() const {
-    constexpr double second = held_for;
-    if (!state.held_layers_known || time_step() >= held_for || parts > 1) return true;
+    const float hold = state.scenario.run.hold_time;
+    if (!state.held_layers_known || time_step() >= hold || parts > 1) return true;
+    const double held = hold;
     return state.steps > state.clock_origin.step &&
-           std::floor(time() / second) > std::floor(time_of(tick() - 1) / second);
+           std::floor(time() / held) > std::floor(time_of(tick() - 1) / held);
   }
   wind::Vector wind_above() const { return state.wind_above_at(time()); }
   const Dice& dice() const { return fields.dice; }

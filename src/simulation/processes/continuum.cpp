@@ -18,7 +18,8 @@ void transport(StepContext& c, ProcessWorkspace* workspace) {
                                  s.get<ShearStressParameters>(),
                                  s.get<AbrasionParameters>(),
                                  s.get<ReposeParameters>(),
-                                 s.get<SaltationParameters>().influx,
+                                 s.get<SaltationParameters>(),
+                                 s.get<EchoDuneParameters>(),
                                  c.time_step(),
                                  s.run.time_step,
                                  c.wind_above(),
@@ -42,7 +43,7 @@ float longest_step(const SimulationState& state) {
 Process continuum_process() {
   Process p;
   p.name = name_of(SandModel::continuum);
-  p.parameters = {"saltation", continuum_section, "shear_stress", "abrasion"};
+  p.parameters = {"saltation", continuum_section, "shear_stress", "abrasion", "echo_dunes"};
   p.source = "Kroy et al. 2002, Andreotti et al. 2010";
   p.header = "kernels/sand/continuum.hpp";
   p.active = [](const Scenario& s) { return has_sand_model(s, SandModel::continuum); };

@@ -22,6 +22,7 @@ void move_slabs(StepContext& c, ProcessWorkspace* workspace) {
                                    s.get<SaltationParameters>(),
                                    s.get<AbrasionParameters>(),
                                    s.get<ReposeParameters>(),
+                                   s.get<EchoDuneParameters>(),
                                    creeps ? s.get<ReptationParameters>().slab : 0.0f,
                                    c.time_step(),
                                    s.run.time_step,
@@ -37,7 +38,7 @@ void move_slabs(StepContext& c, ProcessWorkspace* workspace) {
 Process desertscape_process() {
   Process p;
   p.name = desertscape_name;
-  p.parameters = {"saltation", desertscape_section, "abrasion", "reptation"};
+  p.parameters = {"saltation", desertscape_section, "abrasion", "reptation", "echo_dunes"};
   p.source = "Paris et al. 2019 §5";
   p.header = "kernels/sand/desertscape.hpp";
   p.active = [](const Scenario& s) { return has_sand_model(s, SandModel::desertscape_2019); };

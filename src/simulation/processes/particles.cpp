@@ -13,12 +13,9 @@ const ParticleParameters& particle_parameters(const Scenario& s) { return s.get<
 
 void fly(StepContext& c, ProcessWorkspace* workspace) {
   const Scenario& s = c.scenario();
-  const particles::StepInputs in{particle_parameters(s),
-                                 s.get<ReposeParameters>(),
-                                 s.get<SaltationParameters>().influx,
-                                 c.time_step(),
-                                 c.wind_above(),
-                                 c.fields.impact_strength.data()};
+  const particles::StepInputs in{
+      particle_parameters(s), s.get<ReposeParameters>(),      s.get<SaltationParameters>(), c.time_step(),
+      c.wind_above(),         c.fields.impact_strength.data()};
   with_backend(c.exec(), [&](auto& e) {
     particles::step(e, c.terrain, in, c.dice(), c.state.ledger(),
                     workspace_as<particles::Workspace>(workspace));

@@ -2,13 +2,25 @@
 #include "kernels/plants/cover.hpp"
 #include "kernels/plants/illumination.hpp"
 #include "kernels/plants/life.hpp"
+#include "src/core/number_text.hpp"
 #include "src/simulation/processes/processes.hpp"
 
 namespace desert_sim {
 
 namespace {
 
+/// The look-up of neighbours does not find wider ones.
+void check_radii(const Scenario& s, ValidationErrors& errors) {
+  const float largest = s.get<VegetationParameters>().largest_plant;
+  for (std::size_t n = 0; n < s.species.size(); ++n)
+    if (const float radius = s.species[n].traits.max_radius; radius > largest)
+      errors.add(
+          "species." + std::to_string(n) + ".max_radius",
+          number_text(radius) + " m is more than vegetation.largest_plant, " + number_text(largest) + " m");
+}
+
 void check_plants(const Scenario& s, ValidationErrors& errors) {
+  check_radii(s, errors);
   if (!s.get<VegetationParameters>().enabled) return;
   if (s.species.empty()) errors.add("vegetation.enabled", "needs at least one entry in species");
   for (std::size_t n = 0; n < s.terrain.size(); ++n)
@@ -53,6 +65,10 @@ void update_plants(StepContext& c, ProcessWorkspace*) {
     plants::grow_and_spawn(e, c.terrain, in, c.dice(), c.state.ledger(), c.state.plants);
   });
 }
+
+/// Longest part of a step in which plants live [s]: they grow into each other's way and light within seconds.
+/// No parameter: run.time_step makes parts shorter.
+constexpr float longest_life = 1.0f;
 
 bool has_plants(const Scenario& s) { return s.get<VegetationParameters>().enabled; }
 
@@ -100,8 +116,7 @@ Process vegetation_process() {
   p.writes = {Layer::humus};
   p.writes_if_in_use = {Layer::moisture};
   p.step = update_plants;
-  // Plants grow into each other's way and light within seconds.
-  p.longest_step = [](const SimulationState&) { return 1.0f; };
+  p.longest_step = [](const SimulationState&) { return longest_life; };
   // New plants come up by dice that depend on the step, and their number is read back.
   p.can_be_recorded = [](const SimulationState&) { return false; };
   return p;

@@ -74,6 +74,7 @@ void lift_and_deposit(E& e, StepContext& c, const wind_shadow::Shadow* shadow_la
   const saltation::StepInputs in{s.get<SaltationParameters>(),
                                  s.get<AbrasionParameters>(),
                                  s.get<ReposeParameters>(),
+                                 s.get<EchoDuneParameters>(),
                                  c.time_step(),
                                  s.run.time_step,
                                  c.fields.scratch<Quanta>(1),
@@ -202,6 +203,13 @@ MemoryTraffic avalanche_traffic(const Scenario& s, const Grid& grid) {
 
 }  // namespace
 
+namespace {
+/// Longest part of a step in which hops move sand [s]: the wind's shadow and avalanches follow what a part
+/// moves. No parameter: steps of a second are what saltation's parameters were chosen for, and run.time_step
+/// makes parts shorter.
+constexpr float longest_saltation = 1.0f;
+}  // namespace
+
 /// Begins the flux that the hops of a step add to.
 Process sand_flux_process() {
   Process p;
@@ -225,7 +233,7 @@ Process sand_flux_process() {
 Process saltation_process() {
   Process p;
   p.name = "saltation";
-  p.parameters = {saltation_section, abrasion_section, reptation_section, repose_section};
+  p.parameters = {saltation_section, abrasion_section, reptation_section, repose_section, "echo_dunes"};
   p.source = "Nilles 2024 §3.6, Paris 2019 §5.2";
   p.header = "kernels/sand/saltation.hpp";
   p.roles = {Role::sand_transport, Role::repose};  // the deposit sets the angles in its own pass
@@ -240,8 +248,7 @@ Process saltation_process() {
   p.writes = {Layer::sand, Layer::airborne_sand};
   p.writes_if_in_use = {Layer::bedrock, Layer::soil, Layer::flux_x, Layer::flux_y};
   p.step = saltate;
-  // The wind's shadow and avalanches follow what it moves.
-  p.longest_step = [](const SimulationState&) { return 1.0f; };
+  p.longest_step = [](const SimulationState&) { return longest_saltation; };
   p.refresh = set_angles;  // the angles of repose that a step sets with the deposit
   p.traffic = [](const Scenario&, const Grid&) {
     return MemoryTraffic{13 * 4, "sand, airborne, wind (2), shadow; landed, sand, shadow",
@@ -381,8 +388,8 @@ FusedProcesses fused_wind_shadow_and_saltation() {
   f.applies = [](const SimulationState& state) {
     constexpr int max_cells = 1 << 19;
     const bool on_gpu = state.exec().device() == Device::cuda;  // nor where memory is only planned
-    return on_gpu && state.scenario.run.time_step >= held_for && state.terrain.grid().cells() <= max_cells &&
-           !state.scenario.get<WindShadowParameters>().curved &&
+    return on_gpu && state.scenario.run.time_step >= state.scenario.run.hold_time &&
+           state.terrain.grid().cells() <= max_cells && !state.scenario.get<WindShadowParameters>().curved &&
            !state.scenario.get<EchoDuneParameters>().enabled &&
            !state.scenario.get<SaltationParameters>().flux;
   };

@@ -161,8 +161,8 @@ void update_moisture(StepContext& c, ProcessWorkspace*) {
   const Scenario& s = c.scenario();
   with_backend(c.exec(), [&](auto& e) {
     moisture::step(e, c.terrain, s.get<MoistureParameters>(),
-                   {c.time_step(), s.get<ReposeParameters>().moisture_capacity, c.fields.scratch<Quanta>(1)},
-                   c.dice(), c.state.ledger());
+                   {c.time_step(), s.get<ReposeParameters>(), c.fields.scratch<Quanta>(1)}, c.dice(),
+                   c.state.ledger());
   });
 }
 

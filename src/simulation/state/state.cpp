@@ -19,13 +19,14 @@ SimulationState::SimulationState(const Scenario& scenario_at_start, Terrain empt
 }
 
 void SimulationState::take_species() {
-  if (!scenario.get<VegetationParameters>().enabled) return;
+  const VegetationParameters& vegetation = scenario.get<VegetationParameters>();
+  if (!vegetation.enabled) return;
   std::vector<SpeciesTraits> traits;
   for (const Species& species : scenario.species) traits.push_back(species.traits);
   if (plants) return plants::set_species(exec(), plants, traits, scenario.competition);
-  const int most = scenario.get<VegetationParameters>().max_plants;
-  plants = plants::make_workspace(exec(), terrain.grid(), most > 0 ? most : terrain.grid().cells(), traits,
-                                  scenario.competition);
+  const int most = vegetation.max_plants;
+  plants = plants::make_workspace(exec(), terrain.grid(), most > 0 ? most : terrain.grid().cells(),
+                                  vegetation.largest_plant, traits, scenario.competition);
 }
 
 Scenario SimulationState::present_scenario() const {
@@ -41,12 +42,13 @@ void SimulationState::keep_time(const RunParameters& run, int parts) {
     clock_origin.accelerated_at = now;
     clock_origin.paced_time = paced;
   }
+  if (run.hold_time != scenario.run.hold_time) held_layers_known = false;
   if (run.time_step == scenario.run.time_step) return;
   const std::uint64_t done = steps - clock_origin.step;
-  if (done > 0) {  // a second that has begun since the last step needs layers of its own
+  if (done > 0) {  // a hold_time that has begun since the last step needs layers of its own
     const double last = clock_origin.time + static_cast<double>(done - 1) * scenario.run.time_step;
-    const bool same_second = std::floor(now / held_for) == std::floor(last / held_for);
-    held_layers_known = held_layers_known && same_second;
+    const double hold = run.hold_time;
+    held_layers_known = held_layers_known && hold > 0 && std::floor(now / hold) == std::floor(last / hold);
   }
   clock_origin.tick += done * static_cast<std::uint64_t>(parts);
   clock_origin.step = steps;

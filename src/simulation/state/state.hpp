@@ -53,13 +53,14 @@ struct SimulationState {
   SimulationState& operator=(const SimulationState&) = delete;
 
   Exec& exec() const { return terrain.exec(); }
-  /// Whether the layers that are held are those of the present second.
+  /// Whether the layers that are held are those of the present time for which they are (run.hold_time).
   bool held_layers_known = false;
   bool has_held_layers() const;
   /// Whether a layer is in use and part of the state; what is held is, where steps to come need it.
   bool is_part(Layer layer) const {
     const Lifetime lifetime = info(layer).lifetime;
-    const bool held = lifetime == Lifetime::held && held_layers_known && scenario.run.time_step < held_for;
+    const bool held =
+        lifetime == Lifetime::held && held_layers_known && scenario.run.time_step < scenario.run.hold_time;
     return terrain.has(layer) && (lifetime == Lifetime::persistent || held);
   }
 

@@ -112,6 +112,7 @@ void MicroRelief::fill_cells(const Snapshot& s) {
   // Some models move sand without a layer of the wind.
   const bool wind_is_known = std::abs(above) > 1e-3f && !(is_zero(wind_x) && is_zero(wind_y));
   const float steep = settings_.repose_tangent;
+  const saltation::Dryness dryness(settings_.moisture_cutoff);
   for (int y = 0; y < rows_; ++y)
     for (int x = 0; x < width_; ++x) {
       const auto at = [&](int i, int j) {
@@ -131,10 +132,11 @@ void MicroRelief::fill_cells(const Snapshot& s) {
                           two_cells;
       if (std::isnan(slope) || std::isnan(elevation_[i])) continue;
       level_[i] = 1.0f - micro_relief::smooth_step((slope / steep - 0.75f) * 4.0f);
-      const float capacity = settings_.moisture_capacity * std::clamp(soil[i] + sand_[i], 1e-3f, 1.0f);
+      const float capacity =
+          settings_.moisture_capacity *
+          std::clamp(soil[i] + sand_[i], repose::least_moist_depth, settings_.moisture_depth);
       mobile_[i] = (1.0f - shadow[i]) * (1.0f - std::clamp(stones_[i], 0.0f, 1.0f)) *
-                   (1.0f - micro_relief::smooth_step(water[i] / drowned)) *
-                   saltation::dryness(moisture[i] / capacity);
+                   (1.0f - micro_relief::smooth_step(water[i] / drowned)) * dryness(moisture[i] / capacity);
     }
 }
 

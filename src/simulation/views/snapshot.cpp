@@ -57,6 +57,8 @@ std::shared_ptr<Snapshot> Views::make_empty_snapshot(const std::vector<Layer>& l
                      state_.ripple_wind,
                      repose::Tangents::tangent(state_.scenario.get<ReposeParameters>().sand_deg),
                      state_.scenario.get<ReposeParameters>().moisture_capacity,
+                     state_.scenario.get<ReposeParameters>().moisture_depth,
+                     state_.scenario.get<SaltationParameters>().moisture_cutoff,
                      g.height,
                      rows.first,
                      g.origin_y,

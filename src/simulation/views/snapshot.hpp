@@ -29,8 +29,10 @@ struct MicroReliefSettings {
   MicroReliefParameters parameters;
   std::uint64_t seed = 1;
   RippleWind wind;
-  float repose_tangent = 1;     ///< of bare sand
-  float moisture_capacity = 1;  ///< of a metre of ground [m]
+  float repose_tangent = 1;      ///< of bare sand
+  float moisture_capacity = 1;   ///< of a metre of ground [m]
+  float moisture_depth = 1;      ///< down to which ground holds it [m]
+  float moisture_cutoff = 0.1f;  ///< relative moisture from which on sand stays where it is
   // Of the whole terrain, of which a snapshot may have a band of rows only:
   int grid_height = 0, first_row = 0;  ///< [cells]; the snapshot's row 0 is that row
   double origin_y = 0;                 ///< [m]

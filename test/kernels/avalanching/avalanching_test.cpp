@@ -52,6 +52,24 @@ TEST_P(Avalanching, OfOnePairMovesHalfTheExcessTimesTransfer) {
   }
 }
 
+/// Nilles 2024, figure 9: k_c = {1, 0.5} is 0.5 in every tenth sweep and in the last five.
+TEST_P(Avalanching, SomeSweepsMoveLess) {
+  AvalanchingParameters p = one_sweep();
+  p.sweeps = 50;
+  for (int n = 0; n < 50; ++n) EXPECT_EQ(avalanching::transfer_of_sweep(p, n), 1) << n;
+  p.low_transfer = 0.5f;
+  for (int n = 0; n < 50; ++n)
+    EXPECT_EQ(avalanching::transfer_of_sweep(p, n), n % 10 == 9 || n >= 45 ? 0.5f : 1.0f) << n;
+  p.low_every = p.low_last = 0;
+  for (int n = 0; n < 50; ++n) EXPECT_EQ(avalanching::transfer_of_sweep(p, n), 1) << n;
+  p.sweeps = p.low_last = 1;
+  test::BenchTerrain t(exec(), 2, 1, 1, false);
+  t.set(Layer::sand, [](int x, int) { return x ? 1 : 3; });
+  t.set_repose([](int, int) { return 0.5; });
+  t.avalanche(p);
+  EXPECT_NEAR(t.at(Layer::sand, 1, 0), 1 + 0.5 * 0.75, 1e-5);
+}
+
 TEST_P(Avalanching, StopsAtTheSandThatIsThere) {
   test::BenchTerrain t(exec(), 3, 3, 1, false);
   t.set(Layer::bedrock, [](int x, int y) { return x == 1 && y == 1 ? 10 : 0; });
@@ -73,6 +91,16 @@ TEST_P(Avalanching, TaylorKeyserMovesAQuarterOfTheLargestDropByTangents) {
   const double straight = 4, diagonal = 4 / std::sqrt(2.0), sum = 4 * straight + 4 * diagonal;
   EXPECT_NEAR(t.at(Layer::sand, 0, 1), straight / sum, 1e-5);
   EXPECT_NEAR(t.at(Layer::sand, 0, 0), diagonal / sum, 1e-5);
+}
+
+TEST_P(Avalanching, TaylorKeyserMovesItsShareOfTheLargestDrop) {
+  test::BenchTerrain t(exec(), 3, 3, 1, false);
+  t.set(Layer::sand, [](int x, int y) { return x == 1 && y == 1 ? 4 : 0; });
+  t.set_repose([](int, int) { return 0.5; });
+  AvalanchingParameters p = one_sweep(AvalancheScheme::taylor_keyser);
+  p.taylor_keyser_transfer = 0.5f;
+  t.avalanche(p);
+  EXPECT_NEAR(t.at(Layer::sand, 1, 1), 2, 1e-5);
 }
 
 TEST_P(Avalanching, WorksAcrossAPeriodicBorderAndNotAcrossAnOpenOne) {

@@ -44,8 +44,12 @@ struct Ground {
             0.5f,  0.4f,           0.05f,   nullptr,     landed.data(), {}};
   }
   Loose loose() {
-    return {sand.data(), vegetation.data(), water.data(), quantum,
-            repose::RelativeMoisture(terrain, ReposeParameters{})};
+    return {sand.data(),
+            vegetation.data(),
+            water.data(),
+            quantum,
+            repose::RelativeMoisture(terrain, ReposeParameters{}),
+            saltation::Dryness(SaltationParameters().moisture_cutoff)};
   }
   LiftOff lift_off() {
     return {flights(),      loose(),      wind.shear_velocity,
@@ -184,6 +188,24 @@ TEST(ParticleLaws, CreepGoesDownhillByTheDrop) {
   EXPECT_EQ(ground.landed_at(5, 6), 0);
   EXPECT_EQ(ground.sand[static_cast<std::size_t>(ground.grid.index(5, 5))],
             1000000 - ground.landed_at(6, 5) - ground.landed_at(5, 4));
+}
+
+TEST(ParticleLaws, RoughnessAndSplashGoByTheirNumbers) {
+  ParticleParameters p;
+  const Wind usual(p, {8, 0});
+  const float per_speed = make_starts(p).per_impact_speed;
+  p.grains_per_roughness = 15;
+  p.splash_speed = 80;
+  EXPECT_FLOAT_EQ(usual.air.per_roughness, 30 / p.grain_diameter);
+  EXPECT_FLOAT_EQ(Wind(p, {8, 0}).air.per_roughness, 15 / p.grain_diameter);
+  EXPECT_FLOAT_EQ(make_starts(p).per_impact_speed, 0.5f * per_speed);
+}
+
+TEST(ParticleLaws, MoistureHoldsTheSandFromItsCutOffOn) {
+  const saltation::Dryness dry(0.4f);
+  EXPECT_FLOAT_EQ(dry(0), 1);
+  EXPECT_FLOAT_EQ(dry(0.1f), 0.75f);
+  EXPECT_EQ(dry(0.5f), 0);
 }
 
 TEST(ParticleLaws, WaterAndPlantsHoldTheSand) {

@@ -194,6 +194,26 @@ TEST_P(Particles, StayInAWindBelowTheThreshold) {
   }
 }
 
+/// Behind a step of rock of 1 cm: the shelter is higher than ten grains there, and lower than a hundred.
+TEST_P(Particles, ShelterHoldsSandByTheWindAtItsHeight) {
+  for (const auto& [height, held] : {std::pair{"10", true}, {"100", false}}) {
+    auto s = simulation(
+        "grid: {width: 48, height: 8, cell_size: 0.01, boundary: open}\n"
+        "terrain: [uniform: {layer: sand, value: 0.005}, column: {layer: bedrock, x: 0.1, y: 0.04, size_x: "
+        "0.1, size_y: 1, height: 0.01}]\n"
+        "wind: {speed: 14}\navalanching: {enabled: false}\nsand: {model: wang}\n"
+        "particle: {splash_number: 0, shear_height: " +
+        std::string(height) + "}\n");
+    const std::vector<Quanta> before = test::quanta(*s, Layer::sand);
+    test::run(*s, 4);
+    const std::vector<Quanta> after = test::quanta(*s, Layer::sand);
+    int lost = 0;
+    for (std::size_t y = 0; y < 8; ++y)
+      for (std::size_t x = 16; x < 18; ++x) lost += after[48 * y + x] < before[48 * y + x];
+    EXPECT_EQ(lost == 0, held) << height;
+  }
+}
+
 DESERT_ON_EACH_BACKEND(Particles);
 
 }  // namespace

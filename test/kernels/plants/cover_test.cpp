@@ -39,6 +39,19 @@ float difference(float a, float b, float extent, bool periodic) {
   return periodic ? d - extent * std::round(d / extent) : d;
 }
 
+/// The look-up knew no plants of more than 20 m.
+TEST_P(PlantCover, ReachesAsFarAsTheLargestPlant) {
+  for (const float largest : {20.0f, 40.0f}) {
+    SpeciesTraits s = undemanding();
+    s.max_radius = 40;
+    PlantBench b(exec(), 400, 4, {s});
+    b.work = plants::make_workspace(exec(), b.terrain.grid(), 4, largest, {s}, {1});
+    b.put({{119.5f, 2.5f, 0, 36}});
+    b.cover();
+    EXPECT_EQ(b.terrain.at(Layer::vegetation, 150, 2) > 0, largest > 36) << largest;
+  }
+}
+
 /// Every plant is asked, wherever it stands.
 TEST_P(PlantCover, IsWhatAllPlantsTogetherGive) {
   for (bool periodic : {true, false}) {

@@ -103,6 +103,19 @@ TEST_P(PlantGrowth, RootsFindRoomOnlyAboveTheRock) {
   EXPECT_NEAR(after(s, shallow(1.7)).radius, 0.85, 1e-6) << "not below what there is room for";
 }
 
+TEST_P(PlantGrowth, OvergrownPlantsAreThoseBeyondTheirShare) {
+  SpeciesTraits s = undemanding();
+  s.shrink = 0.25f;
+  for (const float overgrown : {1.2f, 1.5f}) {
+    const auto shallow = [=](PlantBench& b) {
+      b.parameters.overgrown = overgrown;
+      b.terrain.set(Layer::bedrock, -0.75).set(Layer::soil, 0.75);  // a plant of radius 1 is 4/3 too wide
+    };
+    EXPECT_EQ(after(s, shallow).radius, overgrown > 1.4f ? 1.0f : 0.75f) << overgrown;
+    EXPECT_EQ(after(s, shallow).health < 1, overgrown < 1.3f) << overgrown;
+  }
+}
+
 TEST_P(PlantGrowth, BuriedStemsAndBareRootsDamage) {
   SpeciesTraits s = undemanding();
   s.stem = 2;

@@ -69,6 +69,15 @@ TEST_P(PlantSpawning, SeedlingsAreHealthyAndSmallAndLieOnTheGround) {
   EXPECT_EQ(cells.size(), plants.size()) << "one a cell";
 }
 
+TEST_P(PlantSpawning, SeedlingsHaveTheirShareOfTheRoom) {
+  PlantBench bench(exec(), 8, 8, {everywhere()});
+  bench.parameters.seedling_share = 0.2f;
+  bench.terrain.set(Layer::soil, 10);
+  bench.live();
+  ASSERT_EQ(bench.plants().size(), 64u);
+  for (const Plant& p : bench.plants()) EXPECT_FLOAT_EQ(p.radius, 2);
+}
+
 TEST_P(PlantSpawning, NeedsMoistureBetweenItsLimits) {
   SpeciesTraits s = everywhere();
   s.moisture_lowest = 0.2f;

@@ -112,6 +112,11 @@ TEST(WheelGround, HalfWetGroundIsFirmMudIsNot) {
   EXPECT_GT(slip(0.8f), slip(0.5f));
   EXPECT_EQ(slip(1), 1);
   EXPECT_GT(w.sinkage(0, 1, {1, 1, 1}), w.sinkage(0, 1, loose));
+  const Scenario s = test::scenario_of("rover: msl\nrepose: {half_wet: 3, saturated: 1}\n");
+  const WheelGround firm = wheels::make_wheel_ground(
+      s.get<TraversabilityParameters>(), s.get<WheelGroundParameters>(), s.get<ReposeParameters>());
+  EXPECT_LT(firm.longitudinal_slip(8 * radians_per_degree, 0.04f, {1, 1, 0.5f}), slip(0.5f));
+  EXPECT_LT(firm.longitudinal_slip(8 * radians_per_degree, 0.04f, {1, 1, 1}), 1);
 }
 
 TEST(WheelGround, ThinSandLetsTheWheelDownOnRock) {

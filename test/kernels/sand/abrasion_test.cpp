@@ -11,7 +11,8 @@ constexpr double rock_quantum = 1.0 / 1048576;
 class AbrasionLaw : public test::OnBackend {
  protected:
   std::unique_ptr<test::BenchTerrain> worn(const std::function<void(test::BenchTerrain&)>& change,
-                                           float rate = 0.01f, float dt = 1, float soil_rate = -1) {
+                                           float rate = 0.01f, float dt = 1, float soil_rate = -1,
+                                           float moisture_cutoff = 0.5f) {
     auto t = std::make_unique<test::BenchTerrain>(exec(), 1, 1);
     t->set(Layer::airborne_sand, 0.5).set(Layer::wind_x, 2 / dt).set(Layer::bedrock, 100);
     change(*t);
@@ -21,6 +22,7 @@ class AbrasionLaw : public test::OnBackend {
     AbrasionParameters a;
     a.rate = rate;
     a.soil_rate = soil_rate;
+    a.moisture_cutoff = moisture_cutoff;
     t->saltation(p, a, {}, dt);
     return t;
   }
@@ -82,6 +84,32 @@ TEST_P(AbrasionLaw, BouncingSandCountsUpToOneMetre) {
     t.saltation(p, a);
     EXPECT_NEAR(t.booked(Material::bedrock, 1) * rock_quantum, 0.01, 2 * rock_quantum) << air;
   }
+}
+
+TEST_P(AbrasionLaw, BouncingSandCountsUpToTheMostOfIt) {
+  SaltationParameters p;
+  p.lift = 0;
+  p.bounce_on_rock = 1;
+  AbrasionParameters a;
+  a.rate = 0.01f;
+  a.most_bouncing = 2;
+  for (double air : {1.0, 2.0, 5.0}) {
+    test::BenchTerrain t(exec(), 1, 1);
+    t.set(Layer::airborne_sand, air).set(Layer::wind_x, 1);
+    t.saltation(p, a);
+    EXPECT_NEAR(t.booked(Material::bedrock, 1) * rock_quantum, 0.01 * std::min(air, 2.0), 2 * rock_quantum);
+  }
+}
+
+TEST_P(AbrasionLaw, OfSoilFadesToNothingAtItsCutOff) {
+  const auto wear = [&](double moisture) {
+    return worn([&](test::BenchTerrain& t) { t.set(Layer::soil, 2).set(Layer::moisture, moisture); }, 0.1f, 1,
+                -1, 0.8f)
+        ->booked(Material::soil, 1);
+  };
+  EXPECT_GT(wear(0.06), 1000) << "m = 0.2, where as little is deposited as on wetter ground";
+  EXPECT_NEAR(wear(0.12), 0.5 / 0.75 * wear(0.06), 2) << "m = 0.4 is half of the cut-off";
+  EXPECT_EQ(wear(0.2401), 0);
 }
 
 TEST_P(AbrasionLaw, WearsSoilFirstAndNeverMoreThanThereIs) {

@@ -108,6 +108,42 @@ TEST_P(ContinuumDunes, TheFlowSeparatesBehindAStep) {
   EXPECT_NEAR(at(66), 9, 1e-5) << "6.5 times its height behind it";
 }
 
+/// By the wind behind a step of rock of 4 m that ends at x = 40: a longer bend makes the bubble longer, and
+/// so does what counts as the lee.
+TEST_P(ContinuumDunes, TheBubbleIsAsLongAsItsBendAndLeeMakeIt) {
+  const auto calm_until = [&](const char* beyond, const char* setting) {
+    auto s = simulation(
+        "grid: {width: 160, height: 8, boundary: open}\n"
+        "terrain: [column: {layer: bedrock, x: 20, y: 4, size_x: 40, size_y: 400, height: 4}" +
+        std::string(beyond) +
+        "]\nwind: {speed: 9}\nsand: {model: continuum}\nshear_stress: {in_phase: 0, in_quadrature: 0, " +
+        setting + "}\n");
+    s->pipeline().refresh_derived();
+    const std::vector<float> wind = test::real(*s, Layer::wind_x);
+    int x = 42;
+    while (x < 159 && wind[static_cast<std::size_t>(4 * 160 + x)] == 0) ++x;
+    return x - 40;
+  };
+  EXPECT_NEAR(calm_until("", "bend_length: 0.1"), 16, 1.5) << "4 m / tan 14 deg";
+  EXPECT_NEAR(calm_until("", "bend_length: 4"), 22, 1.5);
+  EXPECT_NEAR(calm_until("", "bend_length: 8"), 28, 1.5);
+  const char* ramp = ", ramp: {layer: bedrock, merge: add, slope_x: -0.1}";
+  EXPECT_GT(calm_until(ramp, "lee_slope: 0.05"), calm_until(ramp, "lee_slope: 0.2") + 3);
+}
+
+TEST_P(ContinuumDunes, BubblesOverASeamAreCutAtTheirLongest) {
+  for (const auto& [longest, calm] : {std::pair{"120", true}, {"1", false}}) {
+    auto s = simulation(
+        "grid: {width: 120, height: 8}\n"
+        "terrain: [column: {layer: bedrock, x: 108, y: 4, size_x: 20, size_y: 400, height: 4}]\n"
+        "wind: {speed: 9}\nsand: {model: continuum}\nshear_stress: {in_phase: 0, in_quadrature: 0, "
+        "longest_bubble: " +
+        std::string(longest) + "}\n");
+    s->pipeline().refresh_derived();
+    EXPECT_EQ(test::real(*s, Layer::wind_x)[4 * 120 + 5] == 0, calm) << longest;
+  }
+}
+
 /// The largest stress is before the crest, and a ridge across the wind speeds it up.
 TEST_P(ContinuumDunes, TheStressIsLargestBeforeTheCrest) {
   auto s = test::with_sand(

@@ -9,22 +9,36 @@ namespace {
 double tangent(double degrees) { return std::tan(degrees * 3.14159265358979 / 180); }
 
 TEST(MoistureFactor, IsOneWhenDryOneAndAHalfWhenHalfWetAndSmallWhenSaturated) {
-  EXPECT_FLOAT_EQ(repose::moisture_factor(0.0f), 1.0f);
-  EXPECT_FLOAT_EQ(repose::moisture_factor(0.5f), 1.5f);
-  EXPECT_FLOAT_EQ(repose::moisture_factor(1.0f), 0.15f);
-  EXPECT_FLOAT_EQ(repose::moisture_factor(0.25f), 1.25f);
-  EXPECT_FLOAT_EQ(repose::moisture_factor(0.75f), 0.825f);
+  const repose::MoistureFactor factor(ReposeParameters{});
+  EXPECT_FLOAT_EQ(factor(0.0f), 1.0f);
+  EXPECT_FLOAT_EQ(factor(0.5f), 1.5f);
+  EXPECT_FLOAT_EQ(factor(1.0f), 0.15f);
+  EXPECT_FLOAT_EQ(factor(0.25f), 1.25f);
+  EXPECT_FLOAT_EQ(factor(0.75f), 0.825f);
+}
+
+TEST(MoistureFactor, GoesThroughThoseOfHalfWetAndSaturatedGround) {
+  ReposeParameters p;
+  p.half_wet = 3;
+  p.saturated = 0.5f;
+  const repose::MoistureFactor factor(p);
+  EXPECT_FLOAT_EQ(factor(0.0f), 1.0f);
+  EXPECT_FLOAT_EQ(factor(0.25f), 2.0f);
+  EXPECT_FLOAT_EQ(factor(0.5f), 3.0f);
+  EXPECT_FLOAT_EQ(factor(0.75f), 1.75f);
+  EXPECT_FLOAT_EQ(factor(1.0f), 0.5f);
 }
 
 class Reptation : public test::OnBackend {
  protected:
   float tangent_at_one_cell(const ReptationParameters& p,
-                            const std::function<void(test::BenchTerrain&)>& change, double strength = 0) {
+                            const std::function<void(test::BenchTerrain&)>& change, double strength = 0,
+                            const ReposeParameters& repose = {}) {
     test::BenchTerrain t(exec(), 1, 1);
     t.set(Layer::sand, 2);
     t.set_strength([&](int, int) { return strength; });
     change(t);
-    t.reptation(p);
+    t.reptation(p, repose);
     return t.repose.download()[0];
   }
   static ReptationParameters method(ReptationMethod m, float strength = 0.1f) {
@@ -49,6 +63,17 @@ TEST_P(Reptation, TangentIsTheTables) {
               0.15 * tangent(33), 1e-5);
   EXPECT_NEAR(tangent_at_one_cell(off, [](test::BenchTerrain& t) { t.set(Layer::moisture, 3); }),
               0.15 * tangent(33), 1e-5);
+}
+
+TEST_P(Reptation, MoistGroundIsAsDeepAsTold) {
+  ReposeParameters deep;
+  deep.moisture_depth = 2;  // the 2 m of sand then hold 0.6 m
+  const auto moist = [](double moisture) {
+    return [moisture](test::BenchTerrain& t) { t.set(Layer::moisture, moisture); };
+  };
+  const auto off = method(ReptationMethod::off);
+  EXPECT_NEAR(tangent_at_one_cell(off, moist(0.3), 0, deep), 1.5 * tangent(33), 1e-5);
+  EXPECT_NEAR(tangent_at_one_cell(off, moist(0.6), 0, deep), 0.15 * tangent(33), 1e-5);
 }
 
 TEST_P(Reptation, AdaptiveReposeFallsExponentiallyWithImpactsAndWind) {

@@ -26,8 +26,7 @@ class SaltationLaw : public test::OnBackend {
     return {t.at(Layer::sand, 0, 0), t.at(Layer::airborne_sand, 0, 0)};
   }
   /// Share of a metre of landing sand that stays, with no lift.
-  double deposit_share(const std::function<void(test::BenchTerrain&)>& change) {
-    SaltationParameters p;
+  double deposit_share(const std::function<void(test::BenchTerrain&)>& change, SaltationParameters p = {}) {
     p.lift = 0;
     test::BenchTerrain t(exec(), 1, 1);
     t.set(Layer::airborne_sand, 1).set(Layer::wind_x, 1);
@@ -93,6 +92,33 @@ TEST_P(SaltationLaw, LiftFadesWithMoistureAndStopsUnderWater) {
   EXPECT_EQ(one_cell([](test::BenchTerrain& t) { t.set(Layer::moisture, 0.0301); }).air, 0);
   EXPECT_EQ(one_cell([](test::BenchTerrain& t) { t.set(Layer::water, 2e-5); }).air, 0);
   EXPECT_GT(one_cell([](test::BenchTerrain& t) { t.set(Layer::water, 0.5e-5); }).air, 0);
+}
+
+/// The published tenth and hundredth were numbers in the law.
+TEST_P(SaltationLaw, MoistureStopsSandAtItsCutOffAndLeavesTheLeastDeposit) {
+  SaltationParameters p;
+  p.moisture_cutoff = 0.2f;
+  const auto moist = [](double moisture) {
+    return [moisture](test::BenchTerrain& t) { t.set(Layer::moisture, moisture); };
+  };
+  EXPECT_NEAR(one_cell(moist(0.03), p).air, 0.5 * (1 - 0.6 * 0.5), 1e-5) << "m = 0.1 is half of the cut-off";
+  EXPECT_EQ(one_cell(moist(0.0601), p).air, 0);
+  p.least_deposit = 0.25f;
+  const auto under = [](Layer layer, double depth) {
+    return [=](test::BenchTerrain& t) { t.set(Layer::sand, 2).set(layer, depth); };
+  };
+  EXPECT_NEAR(deposit_share(under(Layer::water, 1), p), 0.25 * 0.6, 1e-5);
+  EXPECT_NEAR(deposit_share(under(Layer::moisture, 0.3), p), 0.25 * 0.6, 1e-5);
+  EXPECT_NEAR(deposit_share(under(Layer::moisture, 0.03), p), 0.5 * 0.6, 1e-5);
+}
+
+TEST_P(SaltationLaw, StickyGroundLeavesItsShareOfTheLift) {
+  EchoDuneParameters echo;
+  echo.sticky_lift = 0.25f;
+  test::BenchTerrain t(exec(), 1, 1);
+  t.set(Layer::sand, 10).set(Layer::wind_x, 1).set(Layer::echo, 0.5);
+  t.saltation({}, {}, {}, 1, echo);
+  EXPECT_NEAR(t.at(Layer::airborne_sand, 0, 0), 0.25 * 0.4, 2 * sand_quantum);
 }
 
 TEST_P(SaltationLaw, NothingIsLiftedBelowTheThresholdSpeed) {

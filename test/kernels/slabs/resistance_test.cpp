@@ -157,9 +157,24 @@ TEST_P(SlabResistance, WarmSnowPacksSooner) {
   EXPECT_NEAR(days, 98 * std::exp(-0.8), 2) << "the rate is e^0.8 times that at -20 degC";
 }
 
+TEST_P(SlabResistance, SnowSettlesByItsRateAndItsWarmth) {
+  auto twice = simulation(grid + bed + snow + "slab_snow: {settling_rate: 5.554e-6}\n");
+  EXPECT_NEAR(last_day_of_motion(*twice, 70), 49, 1);
+  auto cold = simulation(grid + bed + snow + "slab_snow: {settling_warmth: 0.02}\n");
+  EXPECT_NEAR(last_day_of_motion(*cold, 80), 98 * std::exp(-0.4), 2) << "at -20 degC";
+}
+
+TEST(SnowSettling, StiffensBeyondItsLooseDensity) {
+  EXPECT_NEAR((slabs::SettledSnow{300, 0.046f}(120, 0.5f)), 120 * std::exp(0.5), 1e-3) << "still loose";
+  const double v = 0.02, from = 200;
+  EXPECT_NEAR((slabs::SettledSnow{200, static_cast<float>(v)}(200, 0.5f)),
+              from + std::log(1 + v * from * 0.5) / v, 1e-2);
+}
+
 /// The law's closed form beside the equation in steps of a second.
 TEST(SnowSettling, FollowsItsEquation) {
   constexpr double rate = 2.777e-6, day = 86400;
+  constexpr slabs::SettledSnow settled{150, 0.046f};
   for (const double begin : {60.0, 119.0, 149.0, 180.0, 240.0}) {
     SCOPED_TRACE(begin);
     double exact = begin;
@@ -167,7 +182,7 @@ TEST(SnowSettling, FollowsItsEquation) {
     for (int n = 0; n < 30; ++n) {
       for (int t = 0; t < 8640; ++t)
         exact += exact * rate * 10 * (exact > 150 ? std::exp(-0.046 * (exact - 150)) : 1);
-      density = slabs::SettleSnow::settled(density, static_cast<float>(rate * day));
+      density = settled(density, static_cast<float>(rate * day));
     }
     EXPECT_NEAR(static_cast<double>(density), exact, 0.01 * exact);
     EXPECT_GT(density, static_cast<float>(begin));

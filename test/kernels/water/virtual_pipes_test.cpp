@@ -249,6 +249,42 @@ TEST_P(WaterLaws, WavesPushDeepWaterDownwindAndShallowWaterHardly) {
   }
 }
 
+TEST_P(WaterLaws, WavesBeginAtTheirDepth) {
+  for (const float depth : {2.0f, 8.0f}) {
+    test::BenchTerrain t(exec(), 16, 16);
+    t.set(Layer::water, depth).set(Layer::wind_x, 8);
+    WaterParameters p;
+    p.wave_strength = 0.1f;
+    p.wave_depth = depth;
+    p.friction = 0;
+    t.flow(p, 0.1f, 2.45);
+    EXPECT_NEAR(t.at(Layer::water_flux_x, 5, 5) / depth, 0.1 * 0.1 * 8 * (1 - std::exp(-0.5)), 1e-3) << depth;
+  }
+}
+
+/// Water on Mars fell as fast as on Earth.
+TEST_P(WaterLaws, FlowByTheirGravity) {
+  for (const WaterModel model : {WaterModel::pipes, WaterModel::shallow_water})
+    for (const float gravity : {3.71f, 9.81f, 2 * 9.81f}) {
+      SCOPED_TRACE(testing::Message() << water_models[static_cast<int>(model)] << ", " << gravity);
+      const double depth = 2, drop = 0.01, step = 0.005;
+      test::BenchTerrain t(exec(), 16, 16);
+      t.set(Layer::water, [&](int x, int) { return x < 8 ? depth : depth - drop; });
+      WaterParameters p;
+      p.model = model;
+      p.friction = 0;
+      p.gravity = gravity;
+      t.flow(p, static_cast<float>(step));
+      const double told = depth * static_cast<double>(gravity) * drop * step;
+      EXPECT_NEAR(t.at(Layer::water_flux_x, 7, 5), told, 0.02 * told);
+      test::BenchTerrain open(exec(), 16, 16, 1, false);
+      open.set(Layer::water, depth);
+      open.flow(p, static_cast<float>(step));
+      const double sill = depth * std::sqrt(static_cast<double>(gravity) * depth);
+      EXPECT_NEAR(open.booked(Material::water, 1) * water_quantum, 64 * sill * step, 0.01 * 64 * sill * step);
+    }
+}
+
 /// Over an open edge water leaves at the speed √(g w) of a sill, or as fast as it comes through the cell.
 /// Tests looked only at whether it leaves: twice the speed passed.
 TEST_P(WaterLaws, OverOpenEdgesWaterLeavesAsOverASill) {
@@ -311,13 +347,27 @@ TEST_P(WaterLaws, CapacityGrowsWithTheSineOfTheSlopeAndTheDepthOfShallowWater) {
     }
 }
 
+TEST_P(WaterLaws, ShallowWaterHasItsShareOfTheCapacity) {
+  for (const double depth : {0.05, 1.0, 2.0, 3.0}) {
+    test::BenchTerrain t(exec(), 4, 4);
+    t.set(Layer::sand, 1).set(Layer::water, depth).set(Layer::water_velocity_x, 2);
+    HydraulicErosionParameters p;
+    p.capacity = 1;
+    p.shallow_share = 0.4f;
+    p.shallow_depth = 2;
+    t.erode(p);
+    const double capacity = 0.1 * std::min(0.4 + 0.3 * depth, 1.0) * std::exp(-depth / 10);
+    EXPECT_NEAR(t.at(Layer::suspended_sediment, 2, 2), 0.1 * capacity, 2e-6) << depth;
+  }
+}
+
 TEST_P(WaterLaws, PlantsHalveTheCapacityAndDoubleTheDeposit) {
+  HydraulicErosionParameters p;
+  p.capacity = 1;
   const auto after = [&](double vegetation, double sediment) {
     test::BenchTerrain t(exec(), 4, 4);
     t.set(Layer::sand, 1).set(Layer::water, 1).set(Layer::water_velocity_x, 2);
     t.set(Layer::vegetation, vegetation).set(Layer::suspended_sediment, sediment);
-    HydraulicErosionParameters p;
-    p.capacity = 1;
     t.erode(p);
     return t.at(Layer::suspended_sediment, 2, 2) - sediment;
   };
@@ -325,6 +375,10 @@ TEST_P(WaterLaws, PlantsHalveTheCapacityAndDoubleTheDeposit) {
   const double capacity = 0.1 * std::exp(-0.1);
   EXPECT_NEAR(after(0, 0.5), -0.1 * (0.5 - capacity), 2e-6);
   EXPECT_NEAR(after(1, 0.5), -0.2 * (0.5 - 0.5 * capacity), 2e-6);
+  p.plant_hold = 0.25f;
+  p.plant_trap = 2;
+  EXPECT_NEAR(after(1, 0) / after(0, 0), 0.75, 1e-4);
+  EXPECT_NEAR(after(1, 0.5), -0.3 * (0.5 - 0.75 * capacity), 2e-6);
 }
 
 /// In a step that is longer than the exchange takes, sediment comes to the capacity and no further. Tests had
@@ -374,6 +428,22 @@ TEST_P(WaterLaws, SeepageSlowsDownWhenTheGroundIsHalfFull) {
   }
 }
 
+/// Half full and a metre deep were numbers in the law.
+TEST_P(WaterLaws, SeepageSlowsDownWhereToldInGroundAsDeepAsTold) {
+  for (const auto& [sand, full] : {std::pair{2.0, 0.12}, {2.0, 0.24}, {8.0, 0.0}, {8.0, 0.6}}) {
+    test::BenchTerrain t(exec(), 3, 3);
+    t.set(Layer::sand, sand).set(Layer::soil, 1).set(Layer::moisture, full).set(Layer::water, 1);
+    MoistureParameters p;
+    p.diffusion = 0;
+    p.wet_from = 0.2f;
+    const double deepest = 4, capacity = 0.3 * std::min(sand + 1, deepest);
+    t.soak(p, 0.3f, 1, static_cast<float>(deepest));
+    const double rate = 0.02 + 0.08 * std::min(sand / deepest, 1.0);
+    const double expected = rate * (full > 0.2 * capacity ? 0.02 : 1) * (capacity - full);
+    EXPECT_NEAR(t.at(Layer::moisture, 1, 1) - full, expected, 2e-6) << sand << ", " << full;
+  }
+}
+
 TEST_P(WaterLaws, WhatTheGroundCannotHoldComesOut) {
   test::BenchTerrain t(exec(), 3, 3);
   t.set(Layer::sand, 0.1).set(Layer::moisture, 0.25);
@@ -386,7 +456,7 @@ TEST_P(WaterLaws, WhatTheGroundCannotHoldComesOut) {
 }
 
 TEST_P(WaterLaws, GroundDriesOnlyWhereNoWaterStandsAndSlowerUnderPlants) {
-  const auto left = [&](double water, double vegetation) {
+  const auto left = [&](double water, double vegetation, float plant_hold = 0.75f) {
     test::BenchTerrain t(exec(), 3, 3);
     t.set(Layer::sand, 2)
         .set(Layer::moisture, 0.1)
@@ -398,11 +468,13 @@ TEST_P(WaterLaws, GroundDriesOnlyWhereNoWaterStandsAndSlowerUnderPlants) {
     p.seepage_sand = 0.2f;
     p.when_wet = 0;
     p.diffusion = 0;
+    p.plant_hold = plant_hold;
     t.soak(p);
     return t.at(Layer::moisture, 1, 1);
   };
   EXPECT_NEAR(left(0, 0), 0.1 * std::exp(-1.0), 2e-6);
   EXPECT_NEAR(left(0, 1), 0.1 * std::exp(-0.25), 2e-6);
+  EXPECT_NEAR(left(0, 1, 0.5f), 0.1 * std::exp(-0.5), 2e-6);
   EXPECT_NEAR(left(1, 0), 0.1 + 0.2 * 0.2, 2e-6);  // it seeps in instead
 }
 
@@ -418,11 +490,12 @@ TEST_P(WaterLaws, MoistureGoesToTheDrierGroundNotTheDeeper) {
 }
 
 TEST_P(WaterLaws, DrySoilBecomesSandAndHumusMakesItSoilAgain) {
+  SoilParameters p;
   const auto sand_after = [&](double moisture, double vegetation, double humus, double sand) {
     test::BenchTerrain t(exec(), 3, 3);
     t.set(Layer::soil, 1).set(Layer::sand, sand).set(Layer::moisture, moisture);
     t.set(Layer::vegetation, vegetation).set(Layer::humus, humus);
-    t.develop_soil({});
+    t.develop_soil(p);
     EXPECT_NEAR(t.at(Layer::soil, 1, 1) + t.at(Layer::sand, 1, 1), 1 + sand, 1e-6);
     EXPECT_NEAR(humus - t.at(Layer::humus, 1, 1), std::min(humus, std::abs(t.at(Layer::sand, 1, 1) - sand)),
                 2e-6);
@@ -435,6 +508,8 @@ TEST_P(WaterLaws, DrySoilBecomesSandAndHumusMakesItSoilAgain) {
   EXPECT_NEAR(sand_after(0.3, 1, 1, 1), -0.01, 2e-6);
   EXPECT_NEAR(sand_after(0.15, 1, 1, 1), -0.005, 2e-6);
   EXPECT_NEAR(sand_after(0.3, 1, 0.004, 1), -0.004, 2e-6);
+  p.cover = 0.4f;
+  EXPECT_NEAR(sand_after(0, 0, 0, 0.2), 0.01 * std::exp(-0.5), 2e-6);
 }
 
 DESERT_ON_EACH_BACKEND(WaterLaws);

@@ -25,6 +25,18 @@ TEST_P(EchoDunes, LaneAndStickyGroundLieAtTheirDistancesBeforeACliff) {
   }
 }
 
+TEST_P(EchoDunes, StickyGroundBeginsAtItsShareBesideTheLane) {
+  for (const float start : {0.5f, 2.0f}) {
+    test::BenchTerrain t(exec(), 64, 3, 1, false);
+    t.set(Layer::bedrock, [](int x, int) { return x >= 40 && x < 44 ? 10 : 0; }).set(Layer::wind_x, 5);
+    EchoDuneParameters p;
+    p.sticky_start = start;
+    t.echo(p);
+    for (int d = 5; d <= 20; ++d)
+      EXPECT_NEAR(t.at(Layer::echo, 40 - d, 1), std::clamp(start - (d - 4) / 16.0, 0.0, 1.0), 1e-5) << d;
+  }
+}
+
 TEST_P(EchoDunes, ScalesWithTheHeightUpToItsLimitAndInMetres) {
   for (double cell : {0.5, 2.0}) {
     test::BenchTerrain t(exec(), 128, 3, cell, false);

@@ -72,6 +72,8 @@ Scenario scenario_at(const std::function<double()>& share) {
     species.name = "kind " + std::to_string(n) + ": \"a\"";
     set_all(species.traits, share);
     set_all(species.appearance, share);
+    species.traits.max_radius =
+        std::min(species.traits.max_radius, s.get<VegetationParameters>().largest_plant);
     species.traits.moisture_lowest =
         std::min(species.traits.moisture_lowest, species.traits.moisture_highest);
     float &low = species.traits.light_lowest, &high = species.traits.light_highest;

@@ -90,6 +90,15 @@ TEST(SpeciesList, RefusesWhatItCannotUse) {
   expect_refused(many + "]", {"17", "16"});
 }
 
+TEST(SpeciesList, AreNoWiderThanTheLargestPlant) {
+  expect_refused("species: [{preset: bush}, {preset: tree, max_radius: 30}]\n",
+                 {"species.1.max_radius: 30 m is more than vegetation.largest_plant, 20 m"});
+  const Scenario s =
+      test::scenario_of("species: [{preset: tree, max_radius: 30}]\nvegetation: {largest_plant: 30}\n");
+  EXPECT_EQ(s.species[0].traits.max_radius, 30);
+  EXPECT_NE(fixed_reason("vegetation.largest_plant"), nullptr);
+}
+
 TEST(SpeciesList, VegetationIsEitherPaintedOrGrown) {
   const std::string painted = "terrain: [uniform: {layer: vegetation, value: 0.5}]\n";
   EXPECT_NO_THROW(test::scenario_of(painted));

@@ -73,6 +73,23 @@ TEST_P(Checkpoint, ContinuesToTheBitInTheMiddleOfASecond) {
   }
 }
 
+/// Likewise in the middle of another time for which it is held, also if that has just been changed.
+TEST_P(Checkpoint, ContinuesToTheBitWhileTheShadowIsHeld) {
+  for (const bool changed : {false, true}) {
+    auto s = simulation(
+        "grid: {width: 40, height: 24}\nterrain: [noise: {layer: sand, low: 0, high: 5, scale: 6}]\n"
+        "wind: {speed: 4}\nsaltation: {lift: 0.5}\nrun: {time_step: 1, hold_time: 4}\n");
+    test::run(*s, 6);
+    if (changed) s->apply(command::SetParameters{{"run.hold_time=5"}});
+    save_checkpoint(folder_.path("a.ck"), *s);
+    const auto loaded = load_checkpoint(folder_.path("a.ck"), exec());
+    EXPECT_EQ(s->state().hash(), loaded->state().hash()) << changed;
+    test::run(*s, 1);
+    test::run(*loaded, 1);
+    EXPECT_EQ(s->state().hash(), loaded->state().hash()) << changed;
+  }
+}
+
 TEST_P(Checkpoint, CutAnywhereIsRefused) {
   const std::string bytes = test::file_bytes(saved());
   for (std::size_t n = 0; n < 16; ++n) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include "test/support/world.hpp"
 
@@ -84,6 +85,24 @@ TEST_P(TimeStep, TheWindsShadowIsHeldForASecond) {
     EXPECT_EQ(shadow == before, n % 4 != 0) << "step " << n;
     before = shadow;
   }
+}
+
+TEST_P(TimeStep, TheWindsShadowIsHeldAsLongAsTold) {
+  auto s = simulation(
+      "grid: {width: 64, height: 32}\nterrain: [cone: {layer: sand, shape: dome, x: 20, y: 16, radius: 10, "
+      "height: 7}]\nwind: {speed: 3, projection: false}\nsaltation: {lift: 0.5}\nrun: {time_step: 1, "
+      "hold_time: 3}\n");
+  std::vector<std::uint32_t> before;
+  const auto changes = [&] {
+    test::run(*s, 1);
+    const std::vector<std::uint32_t> shadow = s->terrain().raw_words(Layer::wind_shadow);
+    return std::exchange(before, shadow) != shadow;
+  };
+  for (int n = 0; n < 7; ++n) EXPECT_EQ(changes(), n % 3 == 0) << "step " << n;
+  s->apply(command::SetParameters{{"run.hold_time=4"}});  // at 7 s
+  for (int n = 7; n < 16; ++n) EXPECT_EQ(changes(), n == 7 || n % 4 == 0) << "step " << n;
+  s->apply(command::SetParameters{{"run.hold_time=0"}});
+  for (int n = 16; n < 20; ++n) EXPECT_TRUE(changes()) << "step " << n;
 }
 
 /// Sand and plants take long steps in parts, with the wind's shadow, avalanches and light of each part; a
