@@ -89,6 +89,7 @@ void SimulationState::begin_balance() {
   with_backend(exec(), [this](auto& e) { surface::fill_elevation(e, terrain.view()); });
   std::vector<Quanta> surface;
   for (std::uint32_t word : terrain.raw_words(Layer::elevation)) surface.push_back(static_cast<Quanta>(word));
+  // The 1st percentile. No parameter: it is found once, and checkpoints hold it.
   const auto percentile = surface.begin() + static_cast<std::ptrdiff_t>((surface.size() - 1) / 100);
   std::nth_element(surface.begin(), percentile, surface.end());
   wind_reference = *percentile;

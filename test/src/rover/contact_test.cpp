@@ -46,6 +46,12 @@ double power_at(const std::vector<double>& heights, double wave_number) {
   return std::norm(sum / 2000.0);
 }
 
+TEST(RelativeMoisture, IsThatOfTheMoistDepth) {
+  EXPECT_DOUBLE_EQ(relative_moisture(0.3, 5, 0.3), 1);
+  EXPECT_DOUBLE_EQ(relative_moisture(0.3, 5, 0.3, 2), 0.5);
+  EXPECT_DOUBLE_EQ(relative_moisture(0.15, 1, 0.3, 2), 0.5);
+}
+
 TEST(RoverOnRipples, ASmallWheelFeelsTheirWavelength) {
   const std::vector<double> z = contacts(0.05, *ground(true));
   double best = 0, at = 0, all = 0;

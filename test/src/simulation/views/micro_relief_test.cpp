@@ -232,6 +232,14 @@ TEST_P(MicroReliefOfSurface, ThereAreNoneWhereTheWindMovesNoSand) {
   EXPECT_EQ(largest_offset(flat(0.9)), 0) << "below the threshold";
   EXPECT_EQ(largest_offset(flat(0)), 0) << "in still air";
   Snapshot s = bare;
+  std::fill(s.layers.at(Layer::moisture).begin(), s.layers.at(Layer::moisture).end(), 0.2f);
+  std::fill(s.layers.at(Layer::sand).begin(), s.layers.at(Layer::sand).end(), 3.0f);
+  s.micro_relief.moisture_cutoff = 1;
+  const double damp = largest_offset(s);
+  EXPECT_GT(damp, 0) << "saltation.moisture_cutoff";
+  s.micro_relief.moisture_depth = 2;
+  EXPECT_GT(largest_offset(s), 1.5 * damp) << "repose.moisture_depth";
+  s = bare;
   s.micro_relief.wind.x = s.micro_relief.wind.y = 0;
   EXPECT_EQ(largest_offset(s), 0) << "where no direction prevails";
 }
