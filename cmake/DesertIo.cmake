@@ -38,7 +38,8 @@ if(DESERT_WITH_IO)
   string(STRIP "${io_missing}" io_missing)
 endif()
 
-# NetCDF and NLopt are optional parts of it: without them desert_run --format netcdf and desert_calibrate say so.
+# NetCDF, NLopt and tinygltf are optional parts of it: without them desert_run --format netcdf, desert_calibrate and
+# desert_run --export terrain.glb say so.
 # desert_find_optional(<name> <header> <library>): the target desert::<name> if both are there, and DESERT_WITH_<NAME>
 # = 1 or 0.
 function(desert_find_optional name header library)
@@ -55,8 +56,9 @@ function(desert_find_optional name header library)
 endfunction()
 desert_find_optional(netcdf netcdf.h netcdf)
 desert_find_optional(nlopt nlopt.h nlopt)
+desert_find_optional(tinygltf tiny_gltf.h tinygltf)
 set(io_about "GDAL ${GDAL_VERSION}, OpenCV ${OpenCV_VERSION}")
-foreach(library IN ITEMS netcdf nlopt)
+foreach(library IN ITEMS netcdf nlopt tinygltf)
   if(TARGET desert::${library})
     string(APPEND io_about ", ${library}")
   else()

@@ -50,6 +50,15 @@ if(DESERT_WITH_IO)
   endif()
 endif()
 
+desert_library(desert_export FOLDERS src/export LINK PUBLIC desert_core desert_render PRIVATE desert_io) # for other programs
+if(TARGET desert_export)
+  target_compile_definitions(desert_export PRIVATE
+    DESERT_WITH_IO=$<TARGET_EXISTS:desert_io> DESERT_WITH_TINYGLTF=${DESERT_WITH_TINYGLTF})
+  if(DESERT_WITH_TINYGLTF)
+    target_link_libraries(desert_export PRIVATE desert::tinygltf)
+  endif()
+endif()
+
 if(DESERT_WITH_ROS)
   desert_library(desert_grid_map FOLDERS src/grid_map LINK PUBLIC desert_io) # for desert_run too: no roscpp
   desert_use_ros(desert_grid_map ${rosbag_storage_LIBRARIES} ${roscpp_serialization_LIBRARIES})
@@ -83,7 +92,7 @@ endif()
 
 # ---- Programs -----------------------------------------------------------------------------------
 desert_library(desert_tools STATIC FOLDERS src/tools EXCLUDE "/desert_(run|bench|dunes|metrics|calibrate)\\.cpp$"
-  LINK PUBLIC desert_command_line desert_core desert_dune_metrics desert_render desert_io desert_grid_map
+  LINK PUBLIC desert_command_line desert_core desert_dune_metrics desert_render desert_export desert_io desert_grid_map
   desert::nlohmann_json)
 if(TARGET desert_tools)
   target_compile_definitions(desert_tools PUBLIC

@@ -197,6 +197,23 @@ struct Materials {
   }
 };
 
+std::string big_endian(std::uint32_t number) {
+  std::string bytes;
+  for (int shift = 24; shift >= 0; shift -= 8) bytes += static_cast<char>(number >> shift & 255);
+  return bytes;
+}
+
+/// A chunk of a PNG file: length, type and content, checksum (CRC-32).
+std::string png_chunk(const std::string& type_and_content) {
+  std::uint32_t crc = 0xffffffff;
+  for (const char c : type_and_content) {
+    crc ^= static_cast<unsigned char>(c);
+    for (int bit = 0; bit < 8; ++bit) crc = crc >> 1 ^ (crc & 1 ? 0xedb88320 : 0);
+  }
+  return big_endian(static_cast<std::uint32_t>(type_and_content.size() - 4)) + type_and_content +
+         big_endian(~crc);
+}
+
 /// Writes outlined text at the lower left; it is omitted if the picture is too small for it.
 void write_caption(cv::Mat& picture, const std::string& text) {
   const double scale = std::max(0.45, picture.cols / 2200.0);
@@ -322,7 +339,16 @@ cv::Mat wind_picture(int width, int height, double cell_size, const float* wind_
   return picture;
 }
 
-void write_png(const std::string& path, const cv::Mat& picture) {
+cv::Mat bgr_of(const render::Picture& picture) {
+  // Red lies in the lowest byte of a colour.
+  const cv::Mat rgba(picture.height, picture.width, CV_8UC4,
+                     const_cast<render::PackedColour*>(picture.pixels.data()));
+  cv::Mat bgr;
+  cv::cvtColor(rgba, bgr, cv::COLOR_RGBA2BGR);
+  return bgr;
+}
+
+void write_png(const std::string& path, const cv::Mat& picture, const std::string& description) {
   const auto throw_error = [&](const std::string& reason) {
     throw ConfigError("picture '" + path + "' cannot be written: " + reason);
   };
@@ -333,7 +359,11 @@ void write_png(const std::string& path, const cv::Mat& picture) {
   } catch (const cv::Exception& error) {
     throw_error(error.err);
   }
-  write_file(path, std::string(bytes.begin(), bytes.end()));
+  constexpr std::size_t end_of_header = 33;  // signature, and the chunk with the size
+  std::string file(bytes.begin(), bytes.end());
+  if (!description.empty())
+    file.insert(end_of_header, png_chunk("tEXt" + std::string("Description") + '\0' + description));
+  write_file(path, file);
 }
 
 }  // namespace desert_sim

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "src/render/rasteriser.hpp"
+
 namespace desert_sim {
 
 /// Pointers to host arrays of width * height values, row-major, row 0 = south; null if a layer is not in use.
@@ -51,9 +53,12 @@ struct VectorCaption {
 cv::Mat wind_picture(int width, int height, double cell_size, const float* wind_x, const float* wind_y,
                      const float* elevation, const VectorCaption& caption = {});
 
+/// A picture of the renderer, 8UC3 in BGR, without its opacity.
+cv::Mat bgr_of(const render::Picture& picture);
+
 /// Writes a PNG file by write_file(). Throws ConfigError that names the file if the path cannot be written
 /// or the picture is empty, WriteError if the disk is full or broken; an existing file of that name is then
-/// unchanged.
-void write_png(const std::string& path, const cv::Mat& picture);
+/// unchanged. `description`: a text that viewers show, in ASCII; empty: none.
+void write_png(const std::string& path, const cv::Mat& picture, const std::string& description = "");
 
 }  // namespace desert_sim

@@ -41,7 +41,8 @@ void check_writable(const std::string& path, const Raster& raster) {
 
 /// Writes a GeoTIFF directly to `path`; false if GDAL reported a failure, which can also happen on closing
 /// the file, for instance on a full disk.
-bool write_dataset(const std::string& path, const Raster& raster, GdalMessages& messages) {
+bool write_dataset(const std::string& path, const Raster& raster, bool declare_no_data,
+                   GdalMessages& messages) {
   const char* settings[] = {"COMPRESS=DEFLATE", "PREDICTOR=3", "ZLEVEL=1", "BIGTIFF=IF_SAFER", nullptr};
   GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("GTiff");
   if (!driver) return false;
@@ -52,7 +53,7 @@ bool write_dataset(const std::string& path, const Raster& raster, GdalMessages& 
   dataset->SetGeoTransform(g.data());
   if (!raster.projection.empty()) dataset->SetProjection(raster.projection.c_str());
   GDALRasterBand& band = *dataset->GetRasterBand(1);
-  band.SetNoDataValue(no_data);
+  if (declare_no_data) band.SetNoDataValue(no_data);
   for (int row = 0; row < raster.height && !messages.failed(); ++row) {
     float* values = const_cast<float*>(raster.values.data()) + static_cast<std::size_t>(row) * raster.width;
     if (band.RasterIO(GF_Write, 0, raster.height - 1 - row, raster.width, 1, values, raster.width, 1,
@@ -104,11 +105,11 @@ std::string Raster::length_unit() const {
   return name ? name : "";
 }
 
-void write_geotiff(const std::string& path, const Raster& raster) {
+void write_geotiff(const std::string& path, const Raster& raster, bool declare_no_data) {
   check_writable(path, raster);
   TemporaryFile file(path);
   GdalMessages messages;
-  if (!write_dataset(file.library_path(), raster, messages))
+  if (!write_dataset(file.library_path(), raster, declare_no_data, messages))
     throw WriteError(concatenate("raster '", path, "': cannot be written: ", messages.text()));
   file.publish();
   std::error_code error;

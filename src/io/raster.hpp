@@ -75,7 +75,12 @@ Raster read_raster(const std::string& path, const RasterOptions& options = {},
 
 /// Writes a float32 GeoTIFF, north up, with NaN as nodata value, geotransform and projection. The data go
 /// through a TemporaryFile. Throws ConfigError if the path or the raster cannot be written, WriteError if
-/// the disk is full or broken; an existing file of that name is then unchanged.
-void write_geotiff(const std::string& path, const Raster& raster);
+/// the disk is full or broken; an existing file of that name is then unchanged. Without `declare_no_data` no
+/// value stands for missing data, for programs that take NaN for all values.
+void write_geotiff(const std::string& path, const Raster& raster, bool declare_no_data = true);
+
+/// Writes the values as an EXR file of one channel of 32-bit floats, north up, without a place. Throws like
+/// write_file(), and ConfigError that names the file if OpenCV has no EXR.
+void write_exr(const std::string& path, const Raster& raster);
 
 }  // namespace desert_sim

@@ -1,9 +1,11 @@
-/// EXR files, which OpenCV reads where GDAL has no driver for them.
+/// EXR files, which OpenCV writes, and reads where GDAL has no driver for them.
 #include <cstdlib>
 #include <cstring>
 #include <mutex>
+#include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
 
+#include "src/core/files.hpp"
 #include "src/core/input_file.hpp"
 #include "src/io/raster_file.hpp"
 #include "src/io/raster_geometry.hpp"
@@ -41,6 +43,12 @@ void read_exr_size(const InputFile& file, std::int64_t& width, std::int64_t& hei
   fail();
 }
 
+/// OpenCV reads this variable once, at its first EXR file.
+void let_opencv_have_exr() {
+  static std::once_flag once;
+  std::call_once(once, [] { setenv("OPENCV_IO_ENABLE_OPENEXR", "1", 0); });
+}
+
 class ExrFile final : public RasterFile {
  public:
   ExrFile(const std::string& path, const RasterOptions& options, const RasterAccess& access)
@@ -58,8 +66,7 @@ class ExrFile final : public RasterFile {
 
   /// Decodes the picture; a band that it lacks is only known then.
   void decode() {
-    static std::once_flag once;  // OpenCV reads this variable once, at its first EXR file
-    std::call_once(once, [] { setenv("OPENCV_IO_ENABLE_OPENEXR", "1", 0); });
+    let_opencv_have_exr();
     try {
       picture_ = cv::imread(file_.descriptor_path(), cv::IMREAD_UNCHANGED);
     } catch (const cv::Exception& error) {
@@ -97,6 +104,22 @@ class ExrFile final : public RasterFile {
 };
 
 }  // namespace
+
+void write_exr(const std::string& path, const Raster& raster) {
+  let_opencv_have_exr();
+  const cv::Mat view(raster.height, raster.width, CV_32F,
+                     const_cast<float*>(raster.values.data()));  // not written to
+  cv::Mat picture;
+  cv::flip(view, picture, 0);
+  std::vector<unsigned char> bytes;
+  try {
+    if (!cv::imencode(".exr", picture, bytes, {cv::IMWRITE_EXR_TYPE, cv::IMWRITE_EXR_TYPE_FLOAT}))
+      throw_raster_error(path, "OpenCV cannot encode it as EXR");
+  } catch (const cv::Exception& error) {
+    throw_raster_error(path, "OpenCV cannot encode it as EXR: " + error.err);
+  }
+  write_file(path, std::string(bytes.begin(), bytes.end()));
+}
 
 std::unique_ptr<RasterFile> open_exr(const std::string& path, const RasterOptions& options,
                                      const RasterAccess& access) {

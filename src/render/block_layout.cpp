@@ -1,5 +1,7 @@
 #include "src/render/block_layout.hpp"
 
+#include <algorithm>
+
 namespace desert_sim::render {
 
 BlockLayout::BlockLayout(int width, int height) : width_(width), height_(height) {
@@ -13,6 +15,16 @@ BlockLayout::BlockLayout(int width, int height) : width_(width), height_(height)
   if (count() <= few) return;
   side_ = 128;
   divide();
+}
+
+BlockLayout BlockLayout::whole(int width, int height) {
+  BlockLayout layout;
+  layout.width_ = width;
+  layout.height_ = height;
+  if (width < 2 || height < 2) return layout;
+  layout.side_ = std::max(width, height) - 1;
+  layout.columns_ = layout.rows_ = 1;
+  return layout;
 }
 
 CellRectangle BlockLayout::vertices(int block) const {

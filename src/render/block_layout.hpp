@@ -16,6 +16,8 @@ class BlockLayout {
   /// Blocks have 64 cells on a side, or 128 where that would be more than 256 blocks: fewer draw calls count
   /// for more than fewer cells in a block that changed.
   BlockLayout(int width, int height);
+  /// All cells in one block, for a mesh of the whole terrain.
+  static BlockLayout whole(int width, int height);
 
   int width() const { return width_; }
   int height() const { return height_; }

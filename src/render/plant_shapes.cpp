@@ -27,10 +27,11 @@ void add_cone(int sides, double x, double y, double ring_z, double radius, doubl
 }
 
 /// Three vertices with the normal of their triangle.
-void add_triangle(const Point* corner, const Colour& colour, Mesh& mesh) {
+void add_triangle(const Point* corner, const Colour& colour, bool light, Mesh& mesh) {
   const Eigen::Vector3f normal =
       (corner[1] - corner[0]).cross(corner[2] - corner[0]).stableNormalized().cast<float>();
-  const PackedColour packed = pack(lit(colour, illumination(normal.x(), normal.y(), normal.z())));
+  const PackedColour packed =
+      pack(light ? lit(colour, illumination(normal.x(), normal.y(), normal.z())) : colour);
   for (std::size_t n = 0; n < 3; ++n) {
     const Eigen::Vector3f p = corner[n].cast<float>();
     mesh.indices.push_back(static_cast<std::uint32_t>(mesh.vertices.size()));
@@ -84,7 +85,7 @@ Mesh plants_mesh(const std::vector<Plant>& plants, const std::vector<std::uint8_
     const Colour colour =
         species[n] < look.colours.size() ? look.colours[species[n]] : SurfaceMaterials().plants;
     for (std::size_t corner = 0; corner + 2 < corners.size(); corner += 3)
-      add_triangle(&corners[corner], colour, mesh);
+      add_triangle(&corners[corner], colour, look.light, mesh);
   }
   mesh.surface_indices = mesh.indices.size();
   return mesh;

@@ -28,6 +28,7 @@ std::vector<std::size_t> widest_plants(const std::vector<float>& radii, std::siz
 struct PlantLook {
   std::vector<Colour> colours;       ///< by species
   double vertical_exaggeration = 1;  ///< of the feet; plants keep their shape
+  bool light = true;                 ///< else their colours are those of the species
 };
 
 /// One mesh of all these plants, with flat light; the widest tenth is detailed. `species` has one number for

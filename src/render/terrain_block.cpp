@@ -134,7 +134,7 @@ TerrainBlock build_terrain_block(const TerrainGrid& grid, int block, int level, 
                              : CellWindow();
   const auto sun_at = [&](int x, int y) { return sun.empty() ? 1.0f : sun.at(x, y); };
   const auto light_at = [&](int x, int y, float nx, float ny, float nz) {
-    return light_on(nx, ny, nz, exaggeration, sun_at(x, y));
+    return !look.light ? Colour{1, 1, 1} : light_on(nx, ny, nz, exaggeration, sun_at(x, y));
   };
   result.ground = build_block(
       layout, block, level, grid.cell_size, elevation,

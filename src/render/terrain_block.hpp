@@ -26,6 +26,7 @@ struct TerrainLook {
   Overlay overlay;
   bool materials = true;  ///< else all ground has the colour of sand
   bool water = true;
+  bool light = true;    ///< else colours are those of the materials, for who lights them anew
   bool shadows = true;  ///< cast by the ground; without, slopes that look away from the sun are dark alone
   /// The alpha of the ground's vertices says how much of wind ripples is seen there, 0…1; else it is 1.
   bool ripples = false;

@@ -6,12 +6,15 @@
 #include <cstdio>
 #include <iostream>
 #include <optional>
+#include <set>
 
 #include "src/command_line/program.hpp"
 #include "src/core/did_you_mean.hpp"
 #include "src/core/error.hpp"
 #include "src/core/files.hpp"
+#include "src/export/export_formats.hpp"
 #include "src/scenario/former_keys.hpp"
+#include "src/scenario/raster_grid.hpp"
 #include "src/scenario/scenario_file.hpp"
 #include "src/simulation/checkpoint.hpp"
 #include "src/simulation/session.hpp"
@@ -46,6 +49,7 @@ void catch_signals() {
 struct RunPlan {
   const Options& options;
   std::string out, checkpoint;
+  std::vector<std::string> exports;    ///< files of --export
   std::vector<std::string> summaries;  ///< paths of the summaries written during the run
   std::uint64_t every = 0, checkpoint_every = 0;
   std::unique_ptr<Film> film;
@@ -56,9 +60,11 @@ struct RunPlan {
 };
 
 RunPlan plan_of(const Options& o) {
-  RunPlan plan{o, "", "", {}, 0, 0, nullptr, 0, {}, {}, nullptr};
+  RunPlan plan{o, "", "", {}, {}, 0, 0, nullptr, 0, {}, {}, nullptr};
   plan.out = o.text("out", "");
   plan.checkpoint = o.text("checkpoint", "");
+  plan.exports = o.values("export");
+  for (const std::string& file : plan.exports) export_format(file);
   plan.checkpoint_every = static_cast<std::uint64_t>(o.number("checkpoint-every", 0, 1, 1LL << 40));
   const std::string format = o.text("format", "geotiff");
   if (format != "geotiff" && format != "netcdf")
@@ -132,6 +138,18 @@ void require_no_input_replaced(const RunPlan& plan, const Journal& journal) {
     require_other(checkpoint, "a checkpoint that the journal loads");
 }
 
+/// Of --export: refuses what could not be written, what another one writes, and what the run reads.
+void require_exports(const RunPlan& plan, const Scenario& scenario) {
+  std::vector<std::string> inputs = raster_paths(scenario);
+  for (const std::string& name : plan.options.positional()) inputs.push_back(scenario_argument(name));
+  std::set<std::string> written;
+  for (const std::string& file : plan.exports) {
+    require_exportable(file, scenario.grid.width, scenario.grid.height, inputs);
+    for (const std::string& name : exported_files(file))
+      if (!written.insert(name).second) throw ConfigError("--export " + name + ": is written twice");
+  }
+}
+
 /// About 250 pictures, ten seconds of a film.
 std::uint64_t usual_film_every(std::uint64_t steps) { return std::max<std::uint64_t>(1, steps / 250); }
 
@@ -146,6 +164,7 @@ void prepare_outputs(RunPlan& plan, const Journal& journal, std::uint64_t steps,
   const std::string created = plan.out.empty() ? "" : create_output_folder(plan.out);
   try {
     if (!plan.checkpoint.empty()) require_writable_file(plan.checkpoint);
+    require_exports(plan, simulation.scenario());
     if (plan.options.text("format", "") == "netcdf")
       plan.series = std::make_unique<TerrainSeries>(plan.out + "/terrain.nc", simulation);
     if (plan.options.has("plot")) require_writable_file(plan.options.text("plot", ""));
@@ -276,6 +295,10 @@ int run_program(const Options& o) {
   if (o.has("plot") && !plan.summaries.empty())
     run_plot_script("--plot", "plot_run.py", o.text("plot", ""), plan.summaries);
   if (plan.film) plan.film->finish(session->simulation());
+  if (!plan.exports.empty()) {
+    const ExportedTerrain terrain = terrain_to_export(session->simulation());
+    for (const std::string& file : plan.exports) export_terrain(file, terrain);
+  }
   if (!plan.checkpoint.empty()) session->save_checkpoint(plan.checkpoint);
   if (plan.out.empty() && !o.has("quiet")) std::cout << summary(session->simulation(), report);
   const std::string missing = conservation_error(session->simulation().state().balance());

@@ -8,9 +8,6 @@
 #include "src/core/lower_case.hpp"
 #include "src/tools/outputs.hpp"
 #if DESERT_WITH_IO
-#include <opencv2/core.hpp>
-#include <opencv2/imgproc.hpp>
-
 #include "src/io/picture.hpp"
 #endif
 
@@ -32,12 +29,7 @@ std::string frame_name(int number) {
 constexpr bool has_pictures = true;
 
 void write_picture(const std::string& path, const render::Picture& picture) {
-  // Red lies in the lowest byte of a colour, and OpenCV writes blue first.
-  const cv::Mat rgba(picture.height, picture.width, CV_8UC4,
-                     const_cast<render::PackedColour*>(picture.pixels.data()));
-  cv::Mat bgr;
-  cv::cvtColor(rgba, bgr, cv::COLOR_RGBA2BGR);
-  write_png(path, bgr);
+  write_png(path, bgr_of(picture));
 }
 #else
 constexpr bool has_pictures = false;

@@ -6,19 +6,16 @@
 
 #include "src/core/did_you_mean.hpp"
 #include "src/core/parameter_page.hpp"
+#include "src/export/snapshot_scene.hpp"
 #include "src/render/level_of_detail.hpp"
-#include "src/render/plant_shapes.hpp"
 #include "src/render/sky.hpp"
 #include "src/render/sunlight.hpp"
-#include "src/render/terrain_block.hpp"
 #include "src/scenario/yaml_parameters.hpp"
 #include "src/terrain/map_layers.hpp"
 
 namespace desert_sim {
 
 namespace {
-
-using render::Mesh;
 
 constexpr double pi = 3.14159265358979323846, radians = pi / 180;
 constexpr int samples = 2;                  // a side of a pixel
@@ -36,50 +33,11 @@ render::Overlay overlay_of(const ViewParameters& p) {
   return overlay;
 }
 
-/// The values of a snapshot in rectangles of cells. It must outlive what is returned.
-render::LayerWindow windows_of(const Snapshot& s) {
-  return [&s](const std::string& name, const render::CellRectangle& wanted) {
-    const MapLayer* const layer = find_map_layer(name);
-    const std::vector<float>* const values = layer ? s.find(layer->layer) : nullptr;
-    if (!values) return render::CellWindow();
-    const render::CellRectangle cells = wanted.clipped({0, 0, s.width, s.height});
-    std::vector<float> part;
-    part.reserve(static_cast<std::size_t>(cells.width) * static_cast<std::size_t>(cells.height));
-    for (int y = cells.y; y < cells.top(); ++y) {
-      const auto row = values->begin() + static_cast<std::ptrdiff_t>(y) * s.width;
-      part.insert(part.end(), row + cells.x, row + cells.right());
-    }
-    return render::CellWindow(cells, std::move(part));
-  };
-}
-
 /// Relief becomes visible, but a mountain stays a mountain: heights span at least a twelfth of the terrain's
 /// length.
 double chosen_exaggeration(const Snapshot& s, double relief) {
   const double length = s.cell_size * std::max(s.width, s.height);
   return relief > 0 ? std::clamp(length / 12 / relief, 1.0, 20.0) : 1.0;
-}
-
-Mesh plants_of(const PlantList& list, double exaggeration) {
-  std::vector<render::Plant> shapes;
-  std::vector<std::uint8_t> species;
-  for (const plants::PlantRecord& plant : list.plants) {
-    shapes.push_back({static_cast<double>(plant.x), static_cast<double>(plant.y),
-                      static_cast<double>(plant.z), static_cast<double>(plant.radius),
-                      static_cast<double>(list.species[plant.species].traits.stem), plant.health / 255.0});
-    species.push_back(plant.species);
-  }
-  render::PlantLook look;
-  look.vertical_exaggeration = exaggeration;
-  for (const Species& kind : list.species) look.colours.push_back(render::crown_colour(kind.appearance.hue));
-  return render::plants_mesh(shapes, species, look);
-}
-
-std::vector<Layer> layers_of(const render::TerrainLook& look) {
-  std::vector<Layer> layers;
-  for (const std::string& name : render::layers_for(look))
-    if (const MapLayer* layer = find_map_layer(name)) layers.push_back(layer->layer);
-  return layers;
 }
 
 /// All cells of the ground lie in this box of a block, with true heights.
@@ -97,7 +55,7 @@ std::vector<render::Box> boxes_of(const render::BlockLayout& layout, double cell
 std::vector<render::TerrainBlock> blocks_of(const Snapshot& s, const std::vector<int>& levels,
                                             const render::TerrainGrid& grid,
                                             const render::TerrainLook& look) {
-  const render::LayerWindow windows = windows_of(s);
+  const render::LayerWindow windows = layer_windows(s);
   std::vector<render::TerrainBlock> blocks(levels.size());
 #pragma omp parallel for schedule(dynamic)
   for (int block = 0; block < grid.layout.count(); ++block)

@@ -1,5 +1,7 @@
 #include "src/tools/run_options.hpp"
 
+#include "src/export/export_formats.hpp"
+
 namespace desert_sim {
 
 Options run_options() {
@@ -52,6 +54,10 @@ Options run_options() {
               "write the surface between these corners with ripples and bumps (section micro_relief) to "
               "DIR/micro_relief.tif, a point each R metres (default 0.05); may be repeated")
       .needs("out")
+      .option("export", "FILE",
+              "write the terrain at the end for other programs, by the ending of FILE; may be repeated: " +
+                  describe_export_formats())
+      .essential()
       .topic("film", "Films, pictures and plots")
       .option("film", "FILE",
               "film the run from above: an .mp4 (needs ffmpeg), a folder of pictures, or one .png of the end")
