@@ -146,7 +146,8 @@ TEST_F(MeshFiles, GlbHasYUpwardsAndBoxes) {
 TEST_F(MeshFiles, GlbHasLinearColours) {
   for (float& depth : snapshot_->layers[Layer::sand]) depth = 1;
   write_glb(path("a.glb"), terrain_of(snapshot_));
-  for (const Triple& colour : read_glb(path("a.glb"))["ground"].mesh.colours)
+  const ReadMesh ground = read_glb(path("a.glb"))["ground"].mesh;
+  for (const Triple& colour : ground.colours)
     EXPECT_NEAR(colour[0] / 65535, 0.701, 0.001) << "0.855 of a display's red";
 }
 
