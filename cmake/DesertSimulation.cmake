@@ -50,7 +50,16 @@ if(DESERT_WITH_IO)
   endif()
 endif()
 
-desert_library(desert_export FOLDERS src/export LINK PUBLIC desert_core desert_render PRIVATE desert_io) # for other programs
+set(left_out "")
+if(NOT DESERT_WITH_IO)
+  list(APPEND left_out mesh_obj height_files gazebo_world)
+endif()
+if(NOT DESERT_WITH_TINYGLTF)
+  list(APPEND left_out mesh_glb)
+endif()
+string(REPLACE ";" "|" left_out "${left_out}")
+desert_library(desert_export FOLDERS src/export EXCLUDE "/(${left_out})\\.cpp$" # for other programs
+  LINK PUBLIC desert_core desert_render PRIVATE desert_io)
 if(TARGET desert_export)
   target_compile_definitions(desert_export PRIVATE
     DESERT_WITH_IO=$<TARGET_EXISTS:desert_io> DESERT_WITH_TINYGLTF=${DESERT_WITH_TINYGLTF})

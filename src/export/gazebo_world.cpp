@@ -4,6 +4,7 @@
 ///   value for missing data (of NaN, all heights are missing), and the square of 2^n + 1 points, whose
 ///   outermost ones lie on the edges of <size>.
 /// - Its middle is the world's origin: contacts take no other place from <pose>, or from x and y in <pos>.
+/// - With shadows, all of a heightmap lies in the shade.
 #include <algorithm>
 #include <filesystem>
 
@@ -69,10 +70,11 @@ std::string text_of(const World& w) {
          ".\n     Heights are the terrain's own. Start Gazebo in this folder, or with it in "
          "GAZEBO_RESOURCE_PATH. -->\n"
          "<sdf version=\"1.6\">\n  <world name=\"desert\">\n"
-         "    <scene><ambient>0.5 0.5 0.55 1</ambient><background>0.7 0.8 0.9 1</background></scene>\n"
+         "    <scene><ambient>0.5 0.5 0.55 1</ambient><background>0.7 0.8 0.9 1</background>"
+         "<shadows>0</shadows></scene>\n"
          "    <light name=\"sun\" type=\"directional\">\n"
          "      <direction>0.5 -0.5 -0.7</direction><diffuse>0.8 0.8 0.75 1</diffuse>\n"
-         "      <specular>0 0 0 1</specular><cast_shadows>false</cast_shadows>\n    </light>\n"
+         "      <specular>0 0 0 1</specular>\n    </light>\n"
          "    <model name=\"terrain\">\n      <static>true</static>\n      <link name=\"ground\">\n"
          "        <collision name=\"contact\">\n          <geometry><heightmap>" +
          map +
