@@ -14,21 +14,27 @@
 namespace desert_sim {
 
 const std::vector<ExportFormat>& export_formats() {
-  static const std::vector<ExportFormat> formats{
+  static const std::vector<ExportFormat> formats {
 #if DESERT_WITH_IO
-      {".obj", "mesh of ground, water and plants, with .mtl and _ground.png", {obj_materials, obj_picture},
-       true, write_obj},
+    {".obj",
+     "mesh of ground, water and plants, with .mtl and _ground.png",
+     {obj_materials, obj_picture},
+     true,
+     write_obj},
 #endif
-      {".ply", "binary mesh of the ground with colours", {}, true, write_ply},
-      {".stl", "binary mesh of the ground", {}, true, write_stl},
+        {".ply", "binary mesh of the ground with colours", {}, true, write_ply},
+        {".stl", "binary mesh of the ground", {}, true, write_stl},
 #if DESERT_WITH_TINYGLTF
-      {".glb", "binary glTF of ground, water and plants", {}, true, write_glb},
+        {".glb", "binary glTF of ground, water and plants", {}, true, write_glb},
 #endif
 #if DESERT_WITH_IO
-      {".exr", "elevation as floats", {}, false, write_elevation_exr},
-      {".png", "elevation in 16 bits, a square of 2^n + 1 pixels", {}, false, write_height_png},
-      {".world", "Gazebo 11, with _heights.tif and _surface.png", {world_heights, world_picture}, true,
-       write_gazebo_world},
+        {".exr", "elevation as floats", {}, false, write_elevation_exr},
+        {".png", "elevation in 16 bits, a square of 2^n + 1 pixels", {}, false, write_height_png},
+        {".world",
+         "Gazebo 11, with _heights.tif and _surface.png",
+         {world_heights, world_picture},
+         true,
+         write_gazebo_world},
 #endif
   };
   return formats;
@@ -45,7 +51,8 @@ const ExportFormat& export_format(const std::string& path) {
   const auto found = std::find_if(export_formats().begin(), export_formats().end(),
                                   [&](const ExportFormat& format) { return ending == format.ending; });
   if (found != export_formats().end()) return *found;
-  throw ConfigError(path + ": " + (ending.empty() ? "has no ending" : in_quotes(ending) + " is not an ending") +
+  throw ConfigError(path + ": " +
+                    (ending.empty() ? "has no ending" : in_quotes(ending) + " is not an ending") +
                     " that this build exports (allowed: " +
                     joined(export_formats(), [](const ExportFormat& format) { return format.ending; }) + ")");
 }
@@ -62,7 +69,8 @@ void require_exportable(const std::string& path, int width, int height,
   for (const std::string& file : exported_files(path)) {
     for (const std::string& input : inputs)
       if (same_file(file, input))
-        throw ConfigError(path + ": would replace " + input + ", which the run reads (allowed: another name)");
+        throw ConfigError(path + ": would replace " + input +
+                          ", which the run reads (allowed: another name)");
     require_writable_file(file);
   }
 }

@@ -43,8 +43,7 @@ TerrainMeshes meshes_of(const ExportedTerrain& terrain) {
   const render::TerrainGrid grid{render::BlockLayout::whole(s.width, s.height), s.cell_size,
                                  std::numeric_limits<float>::quiet_NaN(), 0};
   require_surface(s.width, s.height);
-  render::TerrainBlock block =
-      render::build_terrain_block(grid, 0, 0, layer_windows(s), look_of_export());
+  render::TerrainBlock block = render::build_terrain_block(grid, 0, 0, layer_windows(s), look_of_export());
   TerrainMeshes meshes{std::move(block.ground), std::move(block.water), {}};
   if (terrain.plants) meshes.plants = plants_of(*terrain.plants, 1, false);
   return meshes;
@@ -73,8 +72,7 @@ std::vector<render::PackedColour> surface_colours(const Snapshot& s, const rende
   for (std::size_t i = 0; i < colours.size(); ++i) {
     const float d = (*depth)[i];
     if (d > render::least_water_depth)
-      colours[i] =
-          render::pack(mix(unpacked(colours[i]), render::water_colour(d), render::water_opacity(d)));
+      colours[i] = render::pack(mix(unpacked(colours[i]), render::water_colour(d), render::water_opacity(d)));
   }
   return colours;
 }

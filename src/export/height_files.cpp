@@ -53,8 +53,8 @@ void write_height_png(const std::string& path, const ExportedTerrain& terrain) {
     for (int x = 0; x < square.side(); ++x) {
       const double height = heights[static_cast<std::size_t>(y) * static_cast<std::size_t>(square.side()) +
                                     static_cast<std::size_t>(x)];
-      picture.at<std::uint16_t>(square.side() - 1 - y, x) = static_cast<std::uint16_t>(
-          relief > 0 ? std::lround((height - lowest) / relief * most_levels) : 0);
+      picture.at<std::uint16_t>(square.side() - 1 - y, x) =
+          static_cast<std::uint16_t>(relief > 0 ? std::lround((height - lowest) / relief * most_levels) : 0);
     }
   const double step = relief / most_levels;
   write_png(path, picture,

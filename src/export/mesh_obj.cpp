@@ -43,13 +43,13 @@ class ObjFile {
     file_.text("\no " + name + "\nusemtl " + name + "\n");
     for (const render::Vertex& v : mesh.vertices) {
       const auto channel = [&v](int shift) { return (v.colour >> shift & 255) / 255.0; };
-      file_.text(line_of("v", " %.9g %.9g %.9g %.4f %.4f %.4f", v.x, v.y, v.z, channel(0), channel(8),
-                         channel(16)));
+      file_.text(
+          line_of("v", " %.9g %.9g %.9g %.4f %.4f %.4f", v.x, v.y, v.z, channel(0), channel(8), channel(16)));
     }
     if (picture)
       for (const render::Vertex& v : mesh.vertices)
-        file_.text(line_of("vt", " %.9g %.9g", v.x / (s_.width * s_.cell_size),
-                           v.y / (s_.height * s_.cell_size)));
+        file_.text(
+            line_of("vt", " %.9g %.9g", v.x / (s_.width * s_.cell_size), v.y / (s_.height * s_.cell_size)));
     for (std::size_t n = 0; n < mesh.indices.size(); n += 3) {
       std::string face = "f";
       for (std::size_t corner = 0; corner < 3; ++corner) {

@@ -14,7 +14,8 @@ constexpr std::size_t stl_header_size = 80;
 
 std::string ply_header(const Snapshot& s, const render::Mesh& ground) {
   return "ply\nformat binary_little_endian 1.0\ncomment " + frame_note(s) +
-         "\ncomment x is east, y is north, z is up\nelement vertex " + std::to_string(ground.vertices.size()) +
+         "\ncomment x is east, y is north, z is up\nelement vertex " +
+         std::to_string(ground.vertices.size()) +
          "\nproperty float x\nproperty float y\nproperty float z\n"
          "property float nx\nproperty float ny\nproperty float nz\n"
          "property uchar red\nproperty uchar green\nproperty uchar blue\nelement face " +

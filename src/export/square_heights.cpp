@@ -23,8 +23,8 @@ std::vector<std::size_t> cells_along(int side, int count, bool periodic) {
   cells.reserve(static_cast<std::size_t>(side));
   for (int point = 0; point < side; ++point) {
     const int cell = point - margin(side, count);
-    cells.push_back(static_cast<std::size_t>(periodic ? (cell % count + count) % count
-                                                      : std::clamp(cell, 0, count - 1)));
+    cells.push_back(
+        static_cast<std::size_t>(periodic ? (cell % count + count) % count : std::clamp(cell, 0, count - 1)));
   }
   return cells;
 }

@@ -37,13 +37,16 @@ inline std::shared_ptr<Snapshot> dunes(int width, int height, bool periodic = fa
     for (int y = 0; y < height; ++y)
       for (int x = 0; x < width; ++x) s->layers[name].push_back(static_cast<float>(value(x, y)));
   };
-  layer(Layer::elevation, [](int x, int y) { return -3.3 + 2.1 * x - 0.37 * y + 1.7 * ((5 * x + 3 * y) % 7); });
+  layer(Layer::elevation,
+        [](int x, int y) { return -3.3 + 2.1 * x - 0.37 * y + 1.7 * ((5 * x + 3 * y) % 7); });
   layer(Layer::sand, [](int x, int y) { return x % 3 == 0 && y < 2 ? 0.0 : 1.0; });
   layer(Layer::water, [](int x, int y) { return x >= 2 && y >= 2 ? 0.5 : 0.0; });
   return s;
 }
 
-inline ExportedTerrain terrain_of(const std::shared_ptr<const Snapshot>& snapshot) { return {snapshot, nullptr}; }
+inline ExportedTerrain terrain_of(const std::shared_ptr<const Snapshot>& snapshot) {
+  return {snapshot, nullptr};
+}
 
 inline float elevation(const Snapshot& s, int x, int y) {
   return s.find(Layer::elevation)->at(static_cast<std::size_t>(y * s.width + x));

@@ -1,5 +1,5 @@
-// Heights in files for other programs: read again, they are those of the terrain. What Gazebo makes of a world is computed
-// as Gazebo 11.1 was seen to do it.
+// Heights in files for other programs: read again, they are those of the terrain. What Gazebo makes of a
+// world is computed as Gazebo 11.1 was seen to do it.
 
 #include "src/export/height_files.hpp"
 
@@ -54,11 +54,12 @@ class Gazebo {
 
  private:
   double interpolated(double column, double row) const {
-    const double x = std::clamp(column, 0.0, heights_.width - 1.0), y = std::clamp(row, 0.0, heights_.height - 1.0);
+    const double x = std::clamp(column, 0.0, heights_.width - 1.0),
+                 y = std::clamp(row, 0.0, heights_.height - 1.0);
     const auto at = [&](double c, double r) {
-      return static_cast<double>(heights_.values.at(static_cast<std::size_t>(r) *
-                                                        static_cast<std::size_t>(heights_.width) +
-                                                    static_cast<std::size_t>(c)));
+      return static_cast<double>(
+          heights_.values.at(static_cast<std::size_t>(r) * static_cast<std::size_t>(heights_.width) +
+                             static_cast<std::size_t>(c)));
     };
     const double west = std::floor(x), east = std::ceil(x), south = std::floor(y), north = std::ceil(y);
     const double a = at(west, south) + (x - west) * (at(east, south) - at(west, south)),
@@ -132,8 +133,7 @@ TEST_F(HeightFiles, AroundAnOpenTerrainItsEdgeGoesOnAndAPeriodicOneRepeats) {
 TEST_F(HeightFiles, GazeboTakesTheirRaster) {
   write_gazebo_world(path("a.world"), terrain_of(dunes(40, 40)));
   GDALAllRegister();
-  GDALDatasetUniquePtr raster(
-      GDALDataset::FromHandle(GDALOpen(path("a_heights.tif").c_str(), GA_ReadOnly)));
+  GDALDatasetUniquePtr raster(GDALDataset::FromHandle(GDALOpen(path("a_heights.tif").c_str(), GA_ReadOnly)));
   ASSERT_TRUE(raster);
   int declared = 0;
   raster->GetRasterBand(1)->GetNoDataValue(&declared);
@@ -191,9 +191,10 @@ TEST_F(HeightFiles, PngHasTheElevationBetweenTheHeightsOfItsDescription) {
   ASSERT_EQ(picture.type(), CV_16UC1);
   ASSERT_EQ(picture.cols, 65);
   ASSERT_EQ(picture.rows, 65);
-  const std::smatch said = found(test::file_bytes(path("a.png")),
-                                 "0 is (\\S+) m high, 65535 is (\\S+) m; pixels are 2 m apart, and the middle "
-                                 "is at \\((\\S+), ([-0-9.]+)\\)");
+  const std::smatch said =
+      found(test::file_bytes(path("a.png")),
+            "0 is (\\S+) m high, 65535 is (\\S+) m; pixels are 2 m apart, and the middle "
+            "is at \\((\\S+), ([-0-9.]+)\\)");
   const double low = std::stod(said[1]), high = std::stod(said[2]);
   const double west = std::stod(said[3]) - 64, south = std::stod(said[4]) - 64;
   for (int y = 0; y < 24; ++y)
@@ -218,7 +219,8 @@ TEST_F(HeightFiles, PngOfLevelGroundIsBlackAndOneOfMountainsWarns) {
   write_height_png(path("high.png"), terrain_of(s));
   set_log_sink(before);
   ASSERT_EQ(warnings.size(), 1u);
-  EXPECT_NE(warnings[0].find("high.png: its heights are in steps of 3.05 cm"), std::string::npos) << warnings[0];
+  EXPECT_NE(warnings[0].find("high.png: its heights are in steps of 3.05 cm"), std::string::npos)
+      << warnings[0];
 }
 
 }  // namespace

@@ -50,7 +50,7 @@ TEST_F(Export, DoesNotChangeTheState) {
 
 TEST_F(Export, OfACheckpointNeedsNoStep) {
   run_cpu({scenario_, "--steps", "3", "--checkpoint", path("a.ckpt"), "--export", path("a.stl")});
-  run_cpu({"--resume", path("a.ckpt"), "--steps", "3", "--export", path("b.stl")});
+  run_cpu({"--resume", path("a.ckpt"), "--steps", "0", "--export", path("b.stl")});
   EXPECT_EQ(test::file_bytes(path("a.stl")), test::file_bytes(path("b.stl")));
 }
 
@@ -70,10 +70,11 @@ TEST_F(Export, RefusesWhatCannotBeWrittenBeforeTheRun) {
 TEST_F(Export, DoesNotReplaceWhatTheRunReads) {
   run_cpu({scenario_, "--steps", "0", "--export", path("dem.exr")});
   const std::string before = test::file_bytes(path("dem.exr"));
-  const test::ProgramRun r = run({small("raster: {layer: bedrock, file: dem.exr, stretch: true}"), "--steps", "1",
-                                  "--backend", "cpu", "--export", path("dem.exr")});
+  const test::ProgramRun r = run({small("raster: {layer: bedrock, file: dem.exr, stretch: true}"), "--steps",
+                                  "1", "--backend", "cpu", "--export", path("dem.exr")});
   EXPECT_EQ(r.status, 2);
-  EXPECT_NE(r.err.find("would replace " + path("dem.exr") + ", which the run reads"), std::string::npos) << r.err;
+  EXPECT_NE(r.err.find("would replace " + path("dem.exr") + ", which the run reads"), std::string::npos)
+      << r.err;
   EXPECT_EQ(test::file_bytes(path("dem.exr")), before);
 }
 
