@@ -80,7 +80,7 @@ Raster read_raster(const std::string& path, const RasterOptions& options = {},
 void write_geotiff(const std::string& path, const Raster& raster, bool declare_no_data = true);
 
 /// Writes the values as an EXR file of one channel of 32-bit floats, north up, without a place. Throws like
-/// write_file(), and ConfigError that names the file if OpenCV has no EXR.
+/// write_file(), ConfigError that names the file if OpenCV has no EXR, and WriteError if it cannot make one.
 void write_exr(const std::string& path, const Raster& raster);
 
 }  // namespace desert_sim

@@ -5,6 +5,7 @@
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
 
+#include "src/core/error.hpp"
 #include "src/core/files.hpp"
 #include "src/core/input_file.hpp"
 #include "src/io/raster_file.hpp"
@@ -111,14 +112,16 @@ void write_exr(const std::string& path, const Raster& raster) {
                      const_cast<float*>(raster.values.data()));  // not written to
   cv::Mat picture;
   cv::flip(view, picture, 0);
+  if (!cv::haveImageWriter("a.exr")) throw_raster_error(path, "this OpenCV does not write EXR files");
   std::vector<unsigned char> bytes;
+  std::string reason;
   try {
-    if (!cv::imencode(".exr", picture, bytes, {cv::IMWRITE_EXR_TYPE, cv::IMWRITE_EXR_TYPE_FLOAT}))
-      throw_raster_error(path, "OpenCV cannot encode it as EXR");
+    if (cv::imencode(".exr", picture, bytes, {cv::IMWRITE_EXR_TYPE, cv::IMWRITE_EXR_TYPE_FLOAT}))
+      return write_file(path, std::string(bytes.begin(), bytes.end()));
   } catch (const cv::Exception& error) {
-    throw_raster_error(path, "OpenCV cannot encode it as EXR: " + error.err);
+    reason = ": " + error.err;
   }
-  write_file(path, std::string(bytes.begin(), bytes.end()));
+  throw WriteError(path + ": OpenCV cannot make an EXR file in the folder of temporary files" + reason);
 }
 
 std::unique_ptr<RasterFile> open_exr(const std::string& path, const RasterOptions& options,

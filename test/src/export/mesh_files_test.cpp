@@ -8,8 +8,10 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "src/core/error.hpp"
+#include "src/export/export_formats.hpp"
 #include "src/render/terrain_colours.hpp"
 #include "test/src/export/exported.hpp"
+#include "test/support/full_disk.hpp"
 
 namespace export_test {
 namespace {
@@ -109,6 +111,17 @@ TEST_F(MeshFiles, AreAsTheyWereWhereTheyCannotBeWritten) {
   EXPECT_THROW(write_obj(path("a.obj"), terrain_of(snapshot_)), ConfigError);
   EXPECT_EQ(test::file_bytes(path("a.obj")), "an older one");
   EXPECT_THROW(write_ply(path("none/a.ply"), terrain_of(snapshot_)), ConfigError);
+}
+
+TEST_F(MeshFiles, AreAsTheyWereOnAFullDisk) {
+  const auto large = terrain_of(dunes(100, 100));
+  for (const ExportFormat& format : export_formats()) {
+    const std::string name = "a" + std::string(format.ending);
+    folder_.write(name, "an older one");
+    const test::FullDisk full(1 << 12);
+    EXPECT_THROW(export_terrain(path(name), large), WriteError) << name;
+    EXPECT_EQ(test::file_bytes(path(name)), "an older one");
+  }
 }
 
 TEST_F(MeshFiles, NeedASurface) {
