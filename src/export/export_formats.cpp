@@ -14,29 +14,29 @@
 namespace desert_sim {
 
 const std::vector<ExportFormat>& export_formats() {
-  static const std::vector<ExportFormat> formats {
-#if DESERT_WITH_IO
-    {".obj",
-     "mesh of ground, water and plants, with .mtl and _ground.png",
-     {obj_materials, obj_picture},
-     true,
-     write_obj},
-#endif
-        {".ply", "binary mesh of the ground with colours", {}, true, write_ply},
-        {".stl", "binary mesh of the ground", {}, true, write_stl},
+  static const std::vector<ExportFormat> formats = [] {
+    std::vector<ExportFormat> all;
+    all.push_back({".ply", "binary mesh of the ground with colours", {}, true, write_ply});
+    all.push_back({".stl", "binary mesh of the ground", {}, true, write_stl});
 #if DESERT_WITH_TINYGLTF
-        {".glb", "binary glTF of ground, water and plants", {}, true, write_glb},
+    all.push_back({".glb", "binary glTF of ground, water and plants", {}, true, write_glb});
 #endif
 #if DESERT_WITH_IO
-        {".exr", "elevation as floats", {}, false, write_elevation_exr},
-        {".png", "elevation in 16 bits, a square of 2^n + 1 pixels", {}, false, write_height_png},
-        {".world",
-         "Gazebo 11, with _heights.tif and _surface.png",
-         {world_heights, world_picture},
-         true,
-         write_gazebo_world},
+    all.push_back({".obj",
+                   "mesh of ground, water and plants, with .mtl and _ground.png",
+                   {obj_materials, obj_picture},
+                   true,
+                   write_obj});
+    all.push_back({".exr", "elevation as floats", {}, false, write_elevation_exr});
+    all.push_back({".png", "elevation in 16 bits, a square of 2^n + 1 pixels", {}, false, write_height_png});
+    all.push_back({".world",
+                   "Gazebo 11, with _heights.tif and _surface.png",
+                   {world_heights, world_picture},
+                   true,
+                   write_gazebo_world});
 #endif
-  };
+    return all;
+  }();
   return formats;
 }
 
