@@ -65,7 +65,7 @@ std::vector<std::string> exported_files(const std::string& path) {
 
 void require_exportable(const std::string& path, int width, int height,
                         const std::vector<std::string>& inputs) {
-  if (export_format(path).has_surface) require_surface(width, height);
+  if (export_format(path).has_surface) require_surface(path, width, height);
   for (const std::string& file : exported_files(path)) {
     for (const std::string& input : inputs)
       if (same_file(file, input))

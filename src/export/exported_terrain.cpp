@@ -32,17 +32,17 @@ ExportedTerrain terrain_to_export(Simulation& simulation) {
   return terrain;
 }
 
-void require_surface(int width, int height) {
+void require_surface(const std::string& file, int width, int height) {
   if (std::min(width, height) < 2)
-    throw ConfigError("a terrain of " + std::to_string(width) + " x " + std::to_string(height) +
+    throw ConfigError(file + ": a terrain of " + std::to_string(width) + " x " + std::to_string(height) +
                       " cells has no surface that a mesh could show (allowed: at least 2 x 2)");
 }
 
-TerrainMeshes meshes_of(const ExportedTerrain& terrain) {
+TerrainMeshes meshes_of(const std::string& file, const ExportedTerrain& terrain) {
   const Snapshot& s = *terrain.snapshot;
   const render::TerrainGrid grid{render::BlockLayout::whole(s.width, s.height), s.cell_size,
                                  std::numeric_limits<float>::quiet_NaN(), 0};
-  require_surface(s.width, s.height);
+  require_surface(file, s.width, s.height);
   render::TerrainBlock block = render::build_terrain_block(grid, 0, 0, layer_windows(s), look_of_export());
   TerrainMeshes meshes{std::move(block.ground), std::move(block.water), {}};
   if (terrain.plants) meshes.plants = plants_of(*terrain.plants, 1, false);

@@ -26,11 +26,11 @@ struct TerrainMeshes {
   render::Mesh plants;
 };
 
-/// Throws ConfigError unless a terrain has 2 x 2 cells, the least that a mesh can show.
-void require_surface(int width, int height);
+/// Throws ConfigError that names `file` unless a terrain has 2 x 2 cells, the least that a mesh can show.
+void require_surface(const std::string& file, int width, int height);
 
-/// Throws as require_surface() does.
-TerrainMeshes meshes_of(const ExportedTerrain& terrain);
+/// Throws as require_surface() does. `file`: for which they are.
+TerrainMeshes meshes_of(const std::string& file, const ExportedTerrain& terrain);
 
 /// The colours of the ground, row 0 = south, from the mesh of all cells.
 std::vector<render::PackedColour> ground_colours(const Snapshot& snapshot, const render::Mesh& ground);

@@ -97,7 +97,7 @@ void write_gazebo_world(const std::string& path, const ExportedTerrain& terrain)
   const double relief = static_cast<double>(*range.second) - static_cast<double>(*range.first);
   write_geotiff(heights, raster_of_heights(square, s.cell_size, std::move(points)), false);
   write_colours(picture, square.side(), square.side(),
-                square.of(surface_colours(s, meshes_of(terrain).ground)));
+                square.of(surface_colours(s, meshes_of(path, terrain).ground)));
   // Gazebo divides by the relief; of level ground any height of the map keeps the elevation.
   write_file(path, text_of({frame_note(s) + ", Gazebo's is " +
                                 point_text(square.middle_x(), square.middle_y()) + " of it",

@@ -150,7 +150,7 @@ class GlbScene {
 
 void write_glb(const std::string& path, const ExportedTerrain& terrain) {
   constexpr double most_bytes = 4294967295.0, of_the_text = 1 << 16;
-  const TerrainMeshes meshes = meshes_of(terrain);
+  const TerrainMeshes meshes = meshes_of(path, terrain);
   GlbScene scene(frame_note(*terrain.snapshot) + ", x is east, y is up, -z is north");
   scene.add("ground", meshes.ground, false);
   scene.add("water", meshes.water, true);

@@ -72,7 +72,7 @@ class ObjFile {
 
 void write_obj(const std::string& path, const ExportedTerrain& terrain) {
   const Snapshot& s = *terrain.snapshot;
-  const TerrainMeshes meshes = meshes_of(terrain);
+  const TerrainMeshes meshes = meshes_of(path, terrain);
   const std::string picture = name_beside(path, obj_picture), library = name_beside(path, obj_materials);
   const auto name = [](const std::string& file) { return std::filesystem::path(file).filename().string(); };
   write_colours(picture, s.width, s.height, ground_colours(s, meshes.ground));

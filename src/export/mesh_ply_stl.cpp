@@ -34,7 +34,7 @@ std::array<float, 3> normal_of(const render::Vertex& a, const render::Vertex& b,
 
 void write_ply(const std::string& path, const ExportedTerrain& terrain) {
   const Snapshot& s = *terrain.snapshot;
-  const render::Mesh ground = meshes_of(terrain).ground;
+  const render::Mesh ground = meshes_of(path, terrain).ground;
   const std::vector<render::PackedColour> colours = surface_colours(s, ground);
   BufferedFile file(path);
   file.text(ply_header(s, ground));
@@ -52,7 +52,7 @@ void write_ply(const std::string& path, const ExportedTerrain& terrain) {
 }
 
 void write_stl(const std::string& path, const ExportedTerrain& terrain) {
-  const render::Mesh ground = meshes_of(terrain).ground;
+  const render::Mesh ground = meshes_of(path, terrain).ground;
   BufferedFile file(path);
   std::string header = frame_note(*terrain.snapshot);
   header.resize(stl_header_size, ' ');

@@ -62,7 +62,8 @@ TEST_F(Export, RefusesWhatCannotBeWrittenBeforeTheRun) {
   fs::create_directory(path("b_surface.png"));
   refused({"--export", path("b.world")}, "b_surface.png: cannot be written: is a folder");
   refused({"--export", path("c.obj"), "--export", path("c_ground.png")}, "c_ground.png: is written twice");
-  refused({"--set", "grid.width=1", "--export", path("d.stl")}, "1 x 24 cells has no surface");
+  refused({"--set", "grid.width=1", "--export", path("d.stl")},
+          "d.stl: a terrain of 1 x 24 cells has no surface");
   for (const char* name : {"a.ply", "b.world", "b_heights.tif", "c.obj", "d.stl"})
     EXPECT_FALSE(fs::exists(path(name))) << name;
 }
