@@ -5,11 +5,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "src/core/constants.hpp"
+
 namespace desert_sim {
 
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
 constexpr double shortest_scale = 10, fastest = 100;  // [m/s]; ~set_wind takes no more than the latter
 constexpr int margin = 16;                            // for the letters of the compass [pixels]
 

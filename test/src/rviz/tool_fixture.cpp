@@ -47,6 +47,7 @@ Screen* RvizTools::screen_ = nullptr;
 Window* RvizTools::window_ = nullptr;
 
 void RvizTools::SetUpTestSuite() {
+  if (screen_) return;
   screen_ = new Screen;
   if (!screen_->problem().empty()) return;
   static int argument_count = 1;
@@ -56,7 +57,7 @@ void RvizTools::SetUpTestSuite() {
   window_ = new Window(800, 600, 60);
 }
 
-void RvizTools::TearDownTestSuite() {
+void RvizTools::close() {
   delete window_;
   delete qApp;
   delete screen_;
@@ -174,6 +175,16 @@ void RvizTools::save(const std::string& name) {
     window_->save(std::string(folder) + "/" + name + ".png");
 }
 
+namespace {
+
+class Closing : public testing::Environment {
+  void TearDown() override { RvizTools::close(); }
+};
+
+}  // namespace
 }  // namespace rviz_test
 
-int main(int argc, char** argv) { return node_test::run_tests(argc, argv, "rviz_tools_test"); }
+int main(int argc, char** argv) {
+  testing::AddGlobalTestEnvironment(new rviz_test::Closing);
+  return node_test::run_tests(argc, argv, "rviz_tools_test");
+}

@@ -36,9 +36,12 @@ float at(const std::vector<float>& values, const At& place);
 
 /// Each test begins with the scenario's start, a view from above of all of it, and a display of it.
 class RvizTools : public testing::Test {
+ public:
+  /// The window, after all suites: rviz is started once.
+  static void close();
+
  protected:
   static void SetUpTestSuite();
-  static void TearDownTestSuite();
   void SetUp() override;
   void TearDown() override;
 

@@ -1,0 +1,42 @@
+#pragma once
+/// Local features of the wind as the tool and the form show and edit them: requests of ~edit_wind, words and
+/// outlines. They know neither OGRE nor Qt.
+
+#include <desert_sim/EditWind.h>
+#include <desert_sim/WindFeatureItem.h>
+
+#include <string>
+#include <vector>
+
+#include "src/render/colour.hpp"
+#include "src/render/height_field.hpp"
+
+namespace desert_sim {
+
+using WindFeatures = std::vector<WindFeatureItem>;
+
+/// Which numbers a kind of feature has, beside centre, radius and speed.
+inline bool has_direction(const WindFeatureItem& f) { return f.kind == EditWind::Request::JET; }
+inline bool has_eddies(const WindFeatureItem& f) { return f.kind == EditWind::Request::TURBULENCE; }
+
+/// The request that adds or changes this feature: without the numbers that its kind does not have.
+EditWind::Request wind_request(const std::string& operation, const WindFeatureItem& feature);
+EditWind::Request wind_removal(int id);
+
+/// The least id above `after` that no feature has; from 1 on again after the largest one.
+int free_id(const WindFeatures& features, int after);
+/// Does to the list what a request has done to that of the node.
+void apply_to(WindFeatures& features, const EditWind::Request& done);
+
+/// Such as "vortex 3: 5 m/s, radius 20 m".
+std::string words_of(const WindFeatureItem& feature);
+
+/// Lines on the map, in the terrain's frame, that show place, size and sense: a vortex is a circle whose
+/// arrows turn as it does, a jet an arrow of its length in an ellipse, turbulence a broken circle with
+/// eddies; each has a cross in its centre.
+std::vector<std::vector<render::Place>> outline(const WindFeatureItem& feature);
+/// Half the width of that cross [m].
+double cross_of(const WindFeatureItem& feature);
+render::PackedColour feature_colour(const WindFeatureItem& feature);
+
+}  // namespace desert_sim
