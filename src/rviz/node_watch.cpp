@@ -113,6 +113,15 @@ void NodeWatch::subscribe(const std::string& node) {
       node_handle_.subscribe<dynamic_reconfigure::Config>(node + "/parameter_updates", 1, take);
   description_subscriber_ = node_handle_.subscribe<dynamic_reconfigure::ConfigDescription>(
       node + "/parameter_descriptions", 1, learn);
+  const boost::function<void(const WindFeatureListConstPtr&)> list =
+      [this, generation](const WindFeatureListConstPtr& features) {
+        tell(generation, [this, features] { Q_EMIT wind_features_came(features); });
+      };
+  feature_subscriber_ = node_handle_.subscribe<WindFeatureList>(node + "/wind_features", 1, list);
+}
+
+void NodeWatch::unsubscribe() {
+  status_subscriber_ = parameter_subscriber_ = feature_subscriber_ = ros::Subscriber();
 }
 
 void NodeWatch::loop() {
@@ -132,6 +141,7 @@ void NodeWatch::loop() {
     }
     if (other_node) {
       status_subscriber_ = parameter_subscriber_ = description_subscriber_ = ros::Subscriber();
+      unsubscribe();
       heard_ = looked = looked_for_fleet = Clock::time_point();
       fleet_.forget();
     }
@@ -149,6 +159,7 @@ void NodeWatch::loop() {
     // A new subscription also finds a node that was started anew under a new master, and is sent the status
     // at once.
     status_subscriber_ = parameter_subscriber_ = description_subscriber_ = ros::Subscriber();
+    unsubscribe();
     if (presence == Presence::alive) subscribe(node);
     tell(seen_generation_, [this, presence] { set_presence(presence); });
   }

@@ -3,6 +3,7 @@
 /// thread of Qt what is there.
 
 #include <desert_sim/SimulationStatus.h>
+#include <desert_sim/WindFeatureList.h>
 #include <dynamic_reconfigure/Config.h>
 #include <dynamic_reconfigure/ConfigDescription.h>
 #include <ros/callback_queue.h>
@@ -50,6 +51,8 @@ class NodeWatch : public QObject {
   void description_came(const dynamic_reconfigure::ConfigDescriptionConstPtr& description);
   /// The node's live parameters, at the beginning and after each change.
   void parameters_came(const dynamic_reconfigure::ConfigConstPtr& parameters);
+  /// The local features of the node's wind, at the beginning and after each change.
+  void wind_features_came(const desert_sim::WindFeatureListConstPtr& features);
   /// All rovers and planners in the node's namespace, whenever they or what they say have changed.
   void rovers_changed(const desert_sim::RoverNames& rovers);
   void planners_changed(const desert_sim::PlannerStatuses& planners);
@@ -58,8 +61,9 @@ class NodeWatch : public QObject {
   using Clock = std::chrono::steady_clock;
 
   void loop();
-  /// To the status and the parameters of a node.
+  /// To the status, the parameters and the wind's features of a node.
   void subscribe(const std::string& node);
+  void unsubscribe();
   /// What is found out without a message.
   Presence look(const std::string& node) const;
   /// Calls `news` in the thread of Qt, unless another node is watched by then.
@@ -70,6 +74,7 @@ class NodeWatch : public QObject {
   ros::CallbackQueue queue_;                 ///< of the thread
   ros::NodeHandle node_handle_;              ///< with the queue above
   ros::Subscriber status_subscriber_, parameter_subscriber_, description_subscriber_;
+  ros::Subscriber status_subscriber_, parameter_subscriber_, feature_subscriber_;
   Clock::time_point heard_;       ///< when the last status came
   unsigned seen_generation_ = 0;  ///< the one that the thread works for
   Fleet fleet_;

@@ -15,6 +15,7 @@
 #include "src/rviz/fields.hpp"
 #include "src/rviz/number_table.hpp"
 #include "src/rviz/wind_dial.hpp"
+#include "src/rviz/wind_features_form.hpp"
 
 namespace desert_sim {
 
@@ -41,6 +42,7 @@ WindForm::WindForm(NodeLink& link, QWidget* parent) : QWidget(parent), link_(lin
   auto* const all = new QVBoxLayout(this);
   all->addWidget(make_constant());
   all->addWidget(make_schedule());
+  all->addWidget(new WindFeaturesForm(link));
   all->addStretch();
 }
 

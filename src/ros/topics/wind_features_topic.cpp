@@ -31,9 +31,12 @@ WindFeatureItem message_of(const WindFeature& feature) {
   return m;
 }
 
+constexpr const char* wind_features_topic = "wind_features";
+
 class WindFeaturesTopic : public MessageTopic<WindFeatureList> {
  public:
-  explicit WindFeaturesTopic(const TopicContext& context) : MessageTopic(context, "wind_features") {}
+  WindFeaturesTopic(const TopicContext& context, ros::Publisher latched)
+      : MessageTopic(context, wind_features_topic), latched_(latched) {}
   double rate() const override { return parameters().topics.wind_features_rate; }
   bool publish(const TerrainState& state) override {
     const auto message = boost::make_shared<WindFeatureList>();
@@ -45,12 +48,18 @@ class WindFeaturesTopic : public MessageTopic<WindFeatureList> {
     publisher_.publish(message);
     return true;
   }
+
+ private:
+  ros::Publisher latched_;  ///< publishes nothing: see add_wind_features_topic()
 };
 
 }  // namespace
 
 void add_wind_features_topic(const TopicContext& context, TopicList& topics) {
-  topics.push_back(std::make_unique<WindFeaturesTopic>(context));
+  // rviz has two subscribers in one process, a tool and the panel; see add_costmap_topics().
+  ros::NodeHandle node = context.node;
+  const ros::Publisher latched = node.advertise<WindFeatureList>(wind_features_topic, 1, true);
+  topics.push_back(std::make_unique<WindFeaturesTopic>(context, latched));
 }
 
 }  // namespace desert_sim

@@ -22,18 +22,22 @@ using node_test::Listener;
 using node_test::NodeProcess;
 
 class Panel : public testing::Test {
+ public:
+  /// The screen, after all suites.
+  static void close() {
+    delete qApp;
+    delete screen_;
+  }
+
  protected:
   static void SetUpTestSuite() {
+    if (screen_) return;
     screen_ = new Screen;
     if (!screen_->problem().empty()) return;
     static int argument_count = 1;
     static char name[] = "panel_test";
     static char* arguments[] = {name, nullptr};
     new QApplication(argument_count, arguments);
-  }
-  static void TearDownTestSuite() {
-    delete qApp;
-    delete screen_;
   }
   void SetUp() override {
     if (!qApp) GTEST_SKIP() << screen_->problem();
@@ -69,8 +73,13 @@ class Panel : public testing::Test {
   std::unique_ptr<Listener<SimulationStatus>> statuses_;
 };
 
+class ClosingOfPanel : public testing::Environment {
+  void TearDown() override { Panel::close(); }
+};
+
 inline int run_panel_tests(int argc, char** argv, const char* name) {
   testing::InitGoogleTest(&argc, argv);
+  testing::AddGlobalTestEnvironment(new ClosingOfPanel);
   ros::init(argc, argv, name, ros::init_options::NoSigintHandler);
   ros::start();
   ros::AsyncSpinner spinner(1);

@@ -11,6 +11,7 @@
 #include <QLineEdit>
 #include <QTabWidget>
 #include <QTest>
+#include <cstdlib>
 #include <functional>
 #include <memory>
 #include <pluginlib/class_loader.hpp>
@@ -66,6 +67,15 @@ class PanelWindow {
     edit->selectAll();
     QTest::keyClicks(edit, QString::fromStdString(text));
     QTest::keyClick(edit, Qt::Key_Return);
+  }
+
+  /// Writes a picture of the panel, so high, to the folder that DESERT_PICTURES names, if it names one.
+  void save(const std::string& name, int height = 800) {
+    const char* const folder = std::getenv("DESERT_PICTURES");
+    if (!folder) return;
+    panel_->resize(panel_->width(), height);
+    QTest::qWait(1);  // what is laid out anew is painted
+    panel_->grab().save(QString::fromStdString(std::string(folder) + "/" + name + ".png"));
   }
 
   /// Serves Qt until the condition holds; false if it does not within the time [s], times patience().
