@@ -62,6 +62,7 @@ void NumberTable::set_rows(const std::vector<std::vector<double>>& rows) {
   table_->setRowCount(0);
   for (const std::vector<double>& row : rows) append(row);
   fit_height();
+  Q_EMIT changed();
 }
 
 void NumberTable::show_column(int column, bool shown) { table_->setColumnHidden(column, !shown); }
@@ -72,12 +73,14 @@ void NumberTable::add_row() {
   for (const Column& column : columns_) values.push_back(column.start);
   append(present.empty() ? values : present.back());
   fit_height();
+  Q_EMIT changed();
 }
 
 void NumberTable::remove_row() {
   const int selected = table_->currentRow();
   if (table_->rowCount() > 0) table_->removeRow(selected >= 0 ? selected : table_->rowCount() - 1);
   fit_height();
+  Q_EMIT changed();
 }
 
 void NumberTable::append(const std::vector<double>& values) {
@@ -93,6 +96,7 @@ void NumberTable::append(const std::vector<double>& values) {
     field->setToolTip(column.tip);
     field->setValue(static_cast<std::size_t>(n) < values.size() ? values[static_cast<std::size_t>(n)]
                                                                 : column.start);
+    connect(field, qOverload<double>(&QDoubleSpinBox::valueChanged), this, &NumberTable::changed);
     table_->setCellWidget(row, n, field);
   }
 }

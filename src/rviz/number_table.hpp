@@ -32,6 +32,10 @@ class NumberTable : public QWidget {
   /// Removes the row that is selected, else the last one.
   void remove_row();
 
+ Q_SIGNALS:
+  /// A number, or the number of rows.
+  void changed();
+
  private:
   void append(const std::vector<double>& values);
   void fit_height();

@@ -8,6 +8,7 @@
 #include <QFormLayout>
 #include <QGroupBox>
 #include <QHBoxLayout>
+#include <QMenu>
 #include <QSpinBox>
 #include <QVBoxLayout>
 #include <cmath>
@@ -16,6 +17,8 @@
 #include "src/rviz/number_table.hpp"
 #include "src/rviz/wind_dial.hpp"
 #include "src/rviz/wind_features_form.hpp"
+#include "src/rviz/wind_presets.hpp"
+#include "src/rviz/wind_rose.hpp"
 
 namespace desert_sim {
 
@@ -93,7 +96,15 @@ QWidget* WindForm::make_schedule() {
   kind_->addItem("Timeline: one after the other", QString::fromStdString(SetWindScheduleRequest::TIMELINE));
   kind_->addItem("Rose: drawn by weight", QString::fromStdString(SetWindScheduleRequest::ROSE));
   segments_ = new NumberTable("segments", segment_columns());
-  segments_->set_rows({{0, 7, 60, 10, 1}, {90, 7, 60, 10, 1}});
+  auto* const presets = button("schedule_presets", "Presets", "Fills the table with a known regime");
+  auto* const menu = new QMenu(presets);
+  menu->setToolTipsVisible(true);
+  for (const WindPreset& preset : wind_presets())
+    menu->addAction(preset.name, this, [this, preset] { take(preset); })
+        ->setToolTip(QString("makes ") + preset.dunes);
+  presets->setMenu(menu);
+  rose_ = new WindRose;
+  rose_->setObjectName("wind_rose");
   repeat_ = new QCheckBox("start again at the end");
   repeat_->setObjectName("schedule_repeat");
   repeat_->setChecked(true);
@@ -116,7 +127,11 @@ QWidget* WindForm::make_schedule() {
   rose_row->addStretch();
   auto* const group = new QGroupBox("Wind schedule");
   auto* const rows = new QVBoxLayout(group);
-  rows->addWidget(kind_);
+  auto* const top = new QHBoxLayout;
+  top->addWidget(kind_, 1);
+  top->addWidget(presets);
+  rows->addLayout(top);
+  rows->addWidget(rose_);
   rows->addWidget(segments_);
   rows->addWidget(repeat_);
   rows->addWidget(rose);
@@ -129,6 +144,8 @@ QWidget* WindForm::make_schedule() {
     rose->setVisible(kind_->currentIndex() != 0);
   };
   connect(kind_, qOverload<int>(&QComboBox::currentIndexChanged), this, choose);
+  connect(segments_, &NumberTable::changed, this, &WindForm::draw_rose);
+  segments_->set_rows({{0, 7, 60, 10, 1}, {90, 7, 60, 10, 1}});
   choose();
   return group;
 }
@@ -139,6 +156,22 @@ void WindForm::choose_kind() {
   segments_->show_column(segment_ramp, timeline);
   segments_->show_column(weight, !timeline);
   repeat_->setVisible(timeline);
+  draw_rose();
+}
+
+void WindForm::take(const WindPreset& preset) {
+  std::vector<std::vector<double>> rows;
+  for (const WindPreset::Segment& s : preset.segments)
+    rows.push_back({s.direction_deg, s.speed, s.weight * preset_duration, preset_ramp, s.weight});
+  segments_->set_rows(rows);
+}
+
+void WindForm::draw_rose() {
+  const int share = kind_->currentIndex() == 0 ? duration : weight;
+  std::vector<WindRose::Petal> winds;
+  for (const std::vector<double>& row : segments_->rows())
+    winds.push_back({row[direction], row[speed], row[static_cast<std::size_t>(share)]});
+  rose_->set_winds(winds);
 }
 
 void WindForm::apply_wind() {

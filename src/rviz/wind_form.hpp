@@ -17,6 +17,8 @@ namespace desert_sim {
 
 class NumberTable;
 class WindDial;
+class WindRose;
+struct WindPreset;
 
 class WindForm : public QWidget {
   Q_OBJECT
@@ -35,6 +37,9 @@ class WindForm : public QWidget {
   void apply_wind();
   void apply_schedule();
   void choose_kind();
+  /// Fills the table.
+  void take(const WindPreset& preset);
+  void draw_rose();
 
   NodeLink& link_;
   WindDial* dial_;
@@ -42,6 +47,7 @@ class WindForm : public QWidget {
   QDoubleSpinBox *direction_, *speed_, *ramp_;
   ErrorLine *wind_error_, *schedule_error_;
   QComboBox* kind_;
+  WindRose* rose_;
   NumberTable* segments_;
   QCheckBox* repeat_;
   QDoubleSpinBox* hold_time_;

@@ -4,6 +4,8 @@
 #include <desert_sim/WindFeatureList.h>
 #include <std_srvs/Trigger.h>
 
+#include <QMenu>
+#include <QPushButton>
 #include <QTableWidget>
 #include <cmath>
 
@@ -143,6 +145,46 @@ TEST_F(PanelWinds, WithoutAnIdAreSeenButNotChosen) {
   EXPECT_TRUE(window_->enabled("delete_feature"));
   EXPECT_FALSE(seen("feature_length"));
   window_->panel().repaint();
+}
+
+/// A regime by its name, as a rose and as a timeline.
+TEST_F(PanelWinds, PresetsFillTheTableOfTheSchedule) {
+  auto* const segments = window_->find<QTableWidget>("segments_table");
+  auto* const rose = window_->find<QWidget>("wind_rose");
+  const auto number = [&](int row, int column) {
+    return qobject_cast<QDoubleSpinBox*>(segments->cellWidget(row, column))->value();
+  };
+  const auto choose_preset = [&](const QString& name) {
+    for (QAction* const action : window_->find<QPushButton>("schedule_presets")->menu()->actions())
+      if (action->text() == name) return action->trigger();
+    ADD_FAILURE() << "there is no preset " << name.toStdString();
+  };
+  EXPECT_EQ(rose->property("petals").toInt(), 2) << "what the table begins with";
+  choose_preset("obtuse bimodal");
+  ASSERT_EQ(segments->rowCount(), 2);
+  EXPECT_GT(std::abs(number(0, 0) - number(1, 0)), 90) << "obtuse";
+  window_->click("apply_schedule");
+  window_->type("steps", "20");
+  window_->click("step");
+  EXPECT_TRUE(node_has([](const SimulationStatus& s) {
+    return s.step == 20 && std::abs(s.wind_above.y - 7 * std::sin(M_PI / 3)) < 1e-3;
+  })) << "the first of them, after its ramp";
+  EXPECT_EQ(rose->property("petals").toInt(), 2);
+  choose_preset("complex (star dunes)");
+  ASSERT_EQ(segments->rowCount(), 3);
+  EXPECT_EQ(rose->property("petals").toInt(), 3);
+  choose_preset("seasonal reversal");
+  ASSERT_EQ(segments->rowCount(), 2);
+  EXPECT_EQ(number(1, 0) - number(0, 0), 180);
+  EXPECT_GT(number(0, 2), number(1, 2)) << "one season is longer";
+  EXPECT_GT(number(0, 4), number(1, 4)) << "and its wind is drawn more often";
+  window_->save("panel_rose", 1200);
+  window_->click("segments_add");
+  EXPECT_EQ(rose->property("petals").toInt(), 2) << "a second wind of that direction makes the petal longer";
+  qobject_cast<QDoubleSpinBox*>(segments->cellWidget(2, 0))->setValue(90);
+  EXPECT_EQ(rose->property("petals").toInt(), 3);
+  qobject_cast<QDoubleSpinBox*>(segments->cellWidget(2, 1))->setValue(0);
+  EXPECT_EQ(rose->property("petals").toInt(), 2) << "a calm";
 }
 
 }  // namespace
