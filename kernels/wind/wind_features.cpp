@@ -29,6 +29,19 @@ struct Distance {
   }
 };
 
+/// The distances of a place from a feature's centre along both axes.
+struct Offset {
+  Distance dx, dy;
+
+  DESERT_HD Offset(const Grid& grid, const Prepared& p, float x, float y)
+      : dx(x - p.x, grid.width * grid.cell_size, grid.periodic_x, p.axis_x.fidelity),
+        dy(y - p.y, grid.height * grid.cell_size, grid.periodic_y, p.axis_y.fidelity) {}
+  /// r²/R²
+  DESERT_HD float relative_square(const WindFeature& f) const {
+    return (dx.square + dy.square) / (f.radius * f.radius);
+  }
+};
+
 struct StreamFunction {
   Grid grid;
   const Prepared* features;
@@ -37,10 +50,10 @@ struct StreamFunction {
 
   DESERT_HD float feature_stream(const Prepared& p, float x, float y) const {
     const WindFeature& f = p.feature;
-    const float width = grid.width * grid.cell_size, height = grid.height * grid.cell_size;
-    const Distance dx(x - p.x, width, grid.periodic_x, p.axis_x.fidelity),
-        dy(y - p.y, height, grid.periodic_y, p.axis_y.fidelity);
-    const float r2 = (dx.square + dy.square) / (f.radius * f.radius);
+    if (f.kind == WindFeatureKind::sink) return 0.0f;
+    const Offset offset(grid, p, x, y);
+    const Distance &dx = offset.dx, &dy = offset.dy;
+    const float r2 = offset.relative_square(f);
     if (f.kind == WindFeatureKind::vortex) return p.amplitude * f.radius * exp_negative(0.5f * r2);
     if (f.kind == WindFeatureKind::jet) {
       const float c = p.direction.x, s = p.direction.y, mixed = 2.0f * c * s * dx.odd * dy.odd;
@@ -51,6 +64,7 @@ struct StreamFunction {
     }
     if (r2 >= 1.0f) return 0.0f;
     const float window = (1.0f - r2) * (1.0f - r2);
+    const float width = grid.width * grid.cell_size, height = grid.height * grid.cell_size;
     return p.amplitude * f.scale * window *
            value_noise(static_cast<std::uint64_t>(f.seed), Purpose::turbulence,
                        lattice(x - p.x, width, grid.periodic_x, p.axis_x),
@@ -69,24 +83,39 @@ struct StreamFunction {
   }
 };
 
-struct Curl {
+/// The curl of the stream function, and the flow into sinks.
+struct Flow {
   Grid grid;
+  const Prepared* features;
+  int count;
   const float* stream;
   float *perturbation_x, *perturbation_y;
 
   DESERT_HD void operator()(int x, int y) const {
     const float scale = 0.5f / grid.cell_size;
     const int i = grid.index(x, y);
-    perturbation_x[i] = (stream[sample_index(grid, x, y + 1)] - stream[sample_index(grid, x, y - 1)]) * scale;
-    perturbation_y[i] = (stream[sample_index(grid, x - 1, y)] - stream[sample_index(grid, x + 1, y)]) * scale;
+    float u = (stream[sample_index(grid, x, y + 1)] - stream[sample_index(grid, x, y - 1)]) * scale;
+    float v = (stream[sample_index(grid, x - 1, y)] - stream[sample_index(grid, x + 1, y)]) * scale;
+    for (int n = 0; n < count; ++n) {
+      const Prepared& p = features[n];
+      if (p.feature.kind != WindFeatureKind::sink) continue;
+      const Offset offset(grid, p, (x + 0.5f) * grid.cell_size, (y + 0.5f) * grid.cell_size);
+      const float speed =
+          p.amplitude / p.feature.radius * exp_negative(0.5f * offset.relative_square(p.feature));
+      u -= speed * offset.dx.odd;
+      v -= speed * offset.dy.odd;
+    }
+    perturbation_x[i] = u;
+    perturbation_y[i] = v;
   }
 };
 
 template <class E>
 void step(E& exec, const Grid& grid, const Buffer<Prepared>& features, float* stream, float* perturbation_x,
           float* perturbation_y) {
-  for_each_cell(exec, grid, StreamFunction{grid, features.data(), static_cast<int>(features.size()), stream});
-  for_each_cell(exec, grid, Curl{grid, stream, perturbation_x, perturbation_y});
+  const int count = static_cast<int>(features.size());
+  for_each_cell(exec, grid, StreamFunction{grid, features.data(), count, stream});
+  for_each_cell(exec, grid, Flow{grid, features.data(), count, stream, perturbation_x, perturbation_y});
 }
 
 template void step(Backend&, const Grid&, const Buffer<Prepared>&, float*, float*, float*);

@@ -1,13 +1,15 @@
 #pragma once
 /// Local features of the wind: a divergence-free perturbation from a stream function ψ (curl noise, Bridson
-/// 2007).
+/// 2007), and the flow of sinks, which is the gradient of a potential χ.
 ///
 ///   vortex       ψ = speed R exp(½ (1 − r²/R²))
 ///   jet          ψ = speed η exp(−½ (ξ²/length² + η²/R²)) / max(1, R / (e length))
 ///   turbulence   ψ = 0.925 speed scale noise(X/scale, Y/scale, t/life_time) (1 − r²/R²)²   where r < R
 ///
-///   u =  ∂ψ/∂y
-///   v = −∂ψ/∂x
+///   sink         χ = speed R exp(½ (1 − r²/R²))
+///
+///   u =  ∂ψ/∂y + ∂χ/∂x
+///   v = −∂ψ/∂x + ∂χ/∂y
 ///
 /// X and Y are the distances from the feature's centre, ξ and η those along and across its direction,
 /// r² = X² + Y², R its radius. Along a periodic axis of length E a distance d enters the stream function as
@@ -24,10 +26,13 @@
 /// negative. A jet blows with `speed` along `direction_deg` in its middle, with return flow beside it; one
 /// that is wider than e times its length is fastest in that return flow. No vortex or jet exceeds its speed.
 /// The factor 0.925 makes `speed` the root mean square in the middle of turbulence. Its time is counted in
-/// whole life times and a share of one, in double precision, so that it never freezes.
+/// whole life times and a share of one, in double precision, so that it never freezes. The air of a sink
+/// flows towards its centre, or away from it if `speed` is negative, fastest at r = R, with `speed`.
 ///
-/// Derivatives are central differences, for which the discrete divergence is 0. Reads no layer, and writes
-/// the perturbation only.
+/// A feature is there while begin ≤ t < end, and its centre moves from (x, y) at t = begin with its velocity.
+///
+/// Derivatives of ψ are central differences, for which the discrete divergence is 0; those of χ are exact.
+/// Reads no layer, and writes the perturbation only.
 
 #include <cstdint>
 #include <vector>
@@ -39,8 +44,8 @@
 
 namespace desert_sim {
 
-enum class WindFeatureKind : int { vortex, jet, turbulence };
-constexpr const char* wind_feature_kinds[] = {"vortex", "jet", "turbulence"};
+enum class WindFeatureKind : int { vortex, jet, turbulence, sink };
+constexpr const char* wind_feature_kinds[] = {"vortex", "jet", "turbulence", "sink"};
 
 struct WindFeature {
   WindFeatureKind kind = WindFeatureKind::vortex;
@@ -53,6 +58,8 @@ struct WindFeature {
   float life_time = 30;
   int seed = 1;
   int id = 0;
+  double begin = 0, end = 0;
+  float velocity_x = 0, velocity_y = 0;
 };
 
 constexpr auto parameter_table(const WindFeature*) {
@@ -61,7 +68,8 @@ constexpr auto parameter_table(const WindFeature*) {
       parameter("kind", &P::kind, wind_feature_kinds, "What the feature is."),
       parameter("x", &P::x, -1e9, 1e9, "m", "Centre, in the terrain's frame."),
       parameter("y", &P::y, -1e9, 1e9, "m", "Centre, in the terrain's frame."),
-      parameter("radius", &P::radius, 0.1, 1e5, "m", "Radius of a vortex or patch; half width of a jet."),
+      parameter("radius", &P::radius, 0.1, 1e5, "m",
+                "Radius of a vortex, patch or sink; half width of a jet."),
       parameter("speed", &P::speed, -100, 100, "m/s",
                 "Greatest speed it adds; of turbulence the root mean square in its middle."),
       parameter("direction_deg", &P::direction_deg, -360, 360, "deg",
@@ -70,9 +78,19 @@ constexpr auto parameter_table(const WindFeature*) {
       parameter("scale", &P::scale, 0.1, 1e5, "m", "Size of a turbulence patch's eddies."),
       parameter("life_time", &P::life_time, 0.01, 1e6, "s", "Time in which turbulence renews itself."),
       parameter("seed", &P::seed, 0, 2147483647, "1", "Seed of turbulence."),
-      parameter("id", &P::id, 0, 2147483647, "1", "What edit_wind knows it by, if not 0; not two alike."));
+      parameter("id", &P::id, 0, 2147483647, "1", "What edit_wind knows it by, if not 0; not two alike."),
+      parameter("begin", &P::begin, 0, 1e12, "s", "Simulated time from which it is there."),
+      parameter("end", &P::end, 0, 1e12, "s", "Simulated time from which it is gone; 0: never."),
+      parameter("velocity_x", &P::velocity_x, -100, 100, "m/s",
+                "How fast its centre moves, from x, y at `begin`."),
+      parameter("velocity_y", &P::velocity_y, -100, 100, "m/s",
+                "How fast its centre moves, from x, y at `begin`."));
 }
 static_assert(table_is_complete<WindFeature>());
+
+/// Whether it ends, if ever, after it begins.
+inline bool ends_after_begin(const WindFeature& f) { return f.end == 0 || f.end > f.begin; }
+constexpr const char* end_before_begin = "must be above `begin`, or 0 for never";
 
 namespace wind_features {
 
@@ -88,7 +106,7 @@ struct Prepared {
   WindFeature feature;
   float x = 0, y = 0;            ///< centre, from the grid's south-west corner [m]
   wind::Vector direction{1, 0};  ///< unit vector
-  float amplitude = 0;           ///< of the stream function without its lengths [m/s]
+  float amplitude = 0;           ///< of ψ or χ without its lengths [m/s]; 0 while it is not there
   FeatureAxis axis_x, axis_y;
   std::uint32_t life = 0;   ///< whole life times since the start, modulo 2³²
   float share_of_life = 0;  ///< and the rest, 0 … 1
@@ -99,7 +117,7 @@ struct Prepared {
 Prepared prepare(const WindFeature& feature, wind::Vector direction, const Grid& grid, double origin_x,
                  double origin_y, double time);
 /// Goes on to another time.
-void set_time(Prepared& feature, double time);
+void set_time(Prepared& feature, const Grid& grid, double origin_x, double origin_y, double time);
 
 /// `perturbation_x`, `perturbation_y` [m/s] and the scratch `stream` [m²/s]: one float a cell.
 template <class E>

@@ -26,31 +26,44 @@ FeatureAxis feature_axis(const WindFeature& f, double extent, bool periodic) {
           static_cast<float>(std::min(std::expm1(at_seam) / 1.2, 1.0))};
 }
 
+/// Of ψ or χ without its lengths [m/s].
+double amplitude(const WindFeature& f) {
+  const double speed = f.speed, radius = f.radius, length = f.length, e = std::exp(1.0);
+  switch (f.kind) {
+    case WindFeatureKind::vortex:
+    case WindFeatureKind::sink:
+      return speed * std::sqrt(e);
+    case WindFeatureKind::jet:
+      return speed / std::max(1.0, radius / (e * length));
+    case WindFeatureKind::turbulence:
+      return 0.925 * speed;
+  }
+  return 0;
+}
+
 }  // namespace
 
 Prepared prepare(const WindFeature& feature, wind::Vector direction, const Grid& grid, double origin_x,
                  double origin_y, double time) {
-  const double cell = static_cast<double>(grid.cell_size), width = grid.width * cell,
-               height = grid.height * cell, e = std::exp(1.0);
+  const double cell = static_cast<double>(grid.cell_size);
   Prepared p;
   p.feature = feature;
-  p.x = from_corner(feature.x, origin_x, width, grid.periodic_x);
-  p.y = from_corner(feature.y, origin_y, height, grid.periodic_y);
   p.direction = direction;
-  const double speed = feature.speed, radius = feature.radius, length = feature.length;
-  if (feature.kind == WindFeatureKind::vortex)
-    p.amplitude = static_cast<float>(speed * std::sqrt(e));
-  else if (feature.kind == WindFeatureKind::jet)
-    p.amplitude = static_cast<float>(speed / std::max(1.0, radius / (e * length)));
-  else
-    p.amplitude = static_cast<float>(0.925 * speed);
-  p.axis_x = feature_axis(feature, width, grid.periodic_x);
-  p.axis_y = feature_axis(feature, height, grid.periodic_y);
-  set_time(p, time);
+  p.axis_x = feature_axis(feature, grid.width * cell, grid.periodic_x);
+  p.axis_y = feature_axis(feature, grid.height * cell, grid.periodic_y);
+  set_time(p, grid, origin_x, origin_y, time);
   return p;
 }
 
-void set_time(Prepared& p, double time) {
+void set_time(Prepared& p, const Grid& grid, double origin_x, double origin_y, double time) {
+  const WindFeature& f = p.feature;
+  const double cell = static_cast<double>(grid.cell_size), since = time - f.begin;
+  const bool there = since >= 0 && (f.end == 0 || time < f.end);
+  p.amplitude = there ? static_cast<float>(amplitude(f)) : 0;
+  p.x = from_corner(f.x + static_cast<double>(f.velocity_x) * since, origin_x, grid.width * cell,
+                    grid.periodic_x);
+  p.y = from_corner(f.y + static_cast<double>(f.velocity_y) * since, origin_y, grid.height * cell,
+                    grid.periodic_y);
   const double lives = time / static_cast<double>(p.feature.life_time), whole = std::floor(lives);
   p.life = static_cast<std::uint32_t>(std::fmod(whole, 0x1p32));
   p.share_of_life = static_cast<float>(lives - whole);

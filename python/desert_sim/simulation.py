@@ -45,7 +45,7 @@ def _point(place):
 
 
 def _brush(request, frame, fields):
-    """A request for a shape: `center` and `points` may be tuples (x, y) or (x, y, z) [m]."""
+    """A request for a shape: `center` and `points` may be tuples (x, y) or (x, y, z) [m], `velocity` (x, y) [m/s]."""
     for name, value in fields.items():
         if name not in request.__slots__:
             raise TypeError(not_one_of(name, request.__slots__))
@@ -53,6 +53,8 @@ def _brush(request, frame, fields):
             value = _point(value)
         if name == "points":
             value = [_point(place) for place in value]
+        if name == "velocity" and not hasattr(value, "x"):
+            value = Vector3(value[0], value[1], 0.0)
         setattr(request, name, value)
     request.header.frame_id = frame
     return request

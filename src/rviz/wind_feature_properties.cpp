@@ -17,7 +17,8 @@ struct Kind {
 };
 const Kind kinds[] = {{"Vortex", EditWind::Request::VORTEX},
                       {"Jet", EditWind::Request::JET},
-                      {"Turbulence", EditWind::Request::TURBULENCE}};
+                      {"Turbulence", EditWind::Request::TURBULENCE},
+                      {"Sink", EditWind::Request::SINK}};
 
 double value_of(const rviz::FloatProperty* property) { return static_cast<double>(property->getFloat()); }
 
@@ -38,8 +39,8 @@ WindFeatureProperties::WindFeatureProperties(rviz::Property* parent) {
   int option = 0;
   for (const Kind& kind : kinds) kind_->addOption(kind.label, option++);
   speed_ = number("Speed", 5, -100, 100,
-                  "Largest speed that it adds [m/s]; a vortex with one below 0 turns clockwise. Ctrl and the "
-                  "wheel change it.");
+                  "Largest speed that it adds [m/s]; below 0 a vortex turns clockwise, and a sink blows "
+                  "outwards. Ctrl and the wheel change it.");
   radius_ = number("Radius", 15, 0.1f, 1e5f,
                    "Radius; of a jet half its width [m]. The wheel changes it, and a drag, but for a jet.");
   direction_ = number("Direction", 0, -360, 360,

@@ -34,6 +34,15 @@ void add_vortex(Lines& lines, const render::Place& centre, double radius, bool c
   }
 }
 
+void add_sink(Lines& lines, const render::Place& centre, double radius, bool outward) {
+  lines.push_back(render::circle(centre, radius));
+  for (int n = 0; n < 4; ++n) {
+    const double angle = n * pi / 2, from = (outward ? 0.3 : 1) * radius, to = (outward ? 1 : 0.3) * radius;
+    lines.push_back({beside(centre, angle, from, 0), beside(centre, angle, to, 0)});
+    lines.push_back(head(beside(centre, angle, to, 0), outward ? angle : angle + pi, 0.25 * radius));
+  }
+}
+
 void add_jet(Lines& lines, const render::Place& centre, const WindFeatureItem& f) {
   const double angle = f.direction_deg * pi / 180;
   const Line circle = render::circle({0, 0}, 1);
@@ -61,6 +70,19 @@ void add_turbulence(Lines& lines, const render::Place& centre, const WindFeature
 
 }  // namespace
 
+bool is_there(const WindFeatureItem& f, double time) {
+  return time >= f.begin && (f.end == 0 || time < f.end);
+}
+
+render::Place centre_at(const WindFeatureItem& f, double time) {
+  return {f.center.x + f.velocity.x * (time - f.begin), f.center.y + f.velocity.y * (time - f.begin)};
+}
+
+void put_at(WindFeatureItem& f, const render::Place& place, double time) {
+  f.center.x = place.x - f.velocity.x * (time - f.begin);
+  f.center.y = place.y - f.velocity.y * (time - f.begin);
+}
+
 EditWind::Request wind_request(const std::string& operation, const WindFeatureItem& feature) {
   EditWind::Request request;
   request.operation = operation;
@@ -78,6 +100,9 @@ EditWind::Request wind_request(const std::string& operation, const WindFeatureIt
     request.life_time = feature.life_time;
     request.seed = feature.seed;
   }
+  request.begin = feature.begin;
+  request.end = feature.end;
+  request.velocity = feature.velocity;
   return request;
 }
 
@@ -115,6 +140,9 @@ void apply_to(WindFeatures& features, const EditWind::Request& done) {
   item.scale = done.scale;
   item.life_time = done.life_time;
   item.seed = done.seed;
+  item.begin = done.begin;
+  item.end = done.end;
+  item.velocity = done.velocity;
   if (same != features.end())
     *same = item;
   else
@@ -128,16 +156,22 @@ std::string words_of(const WindFeatureItem& f) {
                   f.direction_deg, f.length, f.radius);
   else
     std::snprintf(text, sizeof text, ": %.3g m/s, radius %.3g m", f.speed, f.radius);
-  return f.kind + (f.id == 0 ? "" : " " + std::to_string(f.id)) + text;
+  std::string words = f.kind + (f.id == 0 ? "" : " " + std::to_string(f.id)) + text;
+  std::snprintf(text, sizeof text, ", from %.6g s", f.begin);
+  if (f.begin > 0) words += text;
+  std::snprintf(text, sizeof text, ", until %.6g s", f.end);
+  return words + (f.end > 0 ? text : "");
 }
 
-std::vector<std::vector<render::Place>> outline(const WindFeatureItem& f) {
-  const render::Place centre{f.center.x, f.center.y};
+std::vector<std::vector<render::Place>> outline(const WindFeatureItem& f, double time) {
+  const render::Place centre = centre_at(f, time);
   Lines lines;
   if (has_direction(f))
     add_jet(lines, centre, f);
   else if (has_eddies(f))
     add_turbulence(lines, centre, f);
+  else if (f.kind == EditWind::Request::SINK)
+    add_sink(lines, centre, f.radius, f.speed < 0);
   else
     add_vortex(lines, centre, f.radius, f.speed < 0);
   const double arm = cross_of(f);
@@ -151,6 +185,7 @@ double cross_of(const WindFeatureItem& f) { return 0.1 * f.radius; }
 render::PackedColour feature_colour(const WindFeatureItem& f) {
   if (has_direction(f)) return render::pack({0.5f, 0.05f, 0.75f});
   if (has_eddies(f)) return render::pack({1, 1, 1});
+  if (f.kind == EditWind::Request::SINK) return render::pack({0.8f, 0.05f, 0.1f});
   return render::pack({0.05f, 0.3f, 1});
 }
 

@@ -19,6 +19,13 @@ using WindFeatures = std::vector<WindFeatureItem>;
 inline bool has_direction(const WindFeatureItem& f) { return f.kind == EditWind::Request::JET; }
 inline bool has_eddies(const WindFeatureItem& f) { return f.kind == EditWind::Request::TURBULENCE; }
 
+/// Whether the feature is there at a simulated time [s], and where its centre is then, in the terrain's
+/// frame.
+bool is_there(const WindFeatureItem& feature, double time);
+render::Place centre_at(const WindFeatureItem& feature, double time);
+/// Moves the feature so that its centre is at a place at that time.
+void put_at(WindFeatureItem& feature, const render::Place& place, double time);
+
 /// The request that adds or changes this feature: without the numbers that its kind does not have.
 EditWind::Request wind_request(const std::string& operation, const WindFeatureItem& feature);
 EditWind::Request wind_removal(int id);
@@ -31,10 +38,10 @@ void apply_to(WindFeatures& features, const EditWind::Request& done);
 /// Such as "vortex 3: 5 m/s, radius 20 m".
 std::string words_of(const WindFeatureItem& feature);
 
-/// Lines on the map, in the terrain's frame, that show place, size and sense: a vortex is a circle whose
-/// arrows turn as it does, a jet an arrow of its length in an ellipse, turbulence a broken circle with
-/// eddies; each has a cross in its centre.
-std::vector<std::vector<render::Place>> outline(const WindFeatureItem& feature);
+/// Lines on the map, in the terrain's frame, that show place, size and sense at a time: a vortex is a circle
+/// whose arrows turn as it does, a sink one with arrows towards its centre, a jet an arrow of its length in
+/// an ellipse, turbulence a broken circle with eddies; each has a cross in its centre.
+std::vector<std::vector<render::Place>> outline(const WindFeatureItem& feature, double time);
 /// Half the width of that cross [m].
 double cross_of(const WindFeatureItem& feature);
 render::PackedColour feature_colour(const WindFeatureItem& feature);

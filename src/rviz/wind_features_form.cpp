@@ -1,6 +1,6 @@
 #include "src/rviz/wind_features_form.hpp"
 
-#include <QFormLayout>
+#include <QGridLayout>
 #include <QGroupBox>
 #include <QHBoxLayout>
 #include <QHeaderView>
@@ -43,7 +43,7 @@ WindFeaturesForm::WindFeaturesForm(NodeLink& link, QWidget* parent) : QWidget(pa
   buttons->addWidget(delete_);
   buttons->addWidget(delete_all_);
   buttons->addStretch();
-  auto* const group = new QGroupBox("Local features: vortices, jets, turbulence");
+  auto* const group = new QGroupBox("Local features: vortices, jets, turbulence, sinks");
   auto* const rows = new QVBoxLayout(group);
   rows->addWidget(none_);
   rows->addWidget(table_);
@@ -89,14 +89,17 @@ void WindFeaturesForm::make_table() {
 
 QWidget* WindFeaturesForm::make_fields() {
   auto* const fields = new QWidget;
-  auto* const form = new QFormLayout(fields);
-  form->setContentsMargins(0, 0, 0, 0);
+  auto* const grid = new QGridLayout(fields);
+  grid->setContentsMargins(0, 0, 0, 0);
+  constexpr int seed_row = 4, last_row = 7;
   const auto add = [&](const char* name, const char* label, double low, double high, const char* unit,
                        const char* tip, double& (*of)(WindFeatureItem&),
                        bool (*has)(const WindFeatureItem&)) {
     QDoubleSpinBox* const field = number_field(name, low, high, 0, 2, unit, tip);
     auto* const text = new QLabel(label);
-    form->addRow(text, field);
+    const int n = static_cast<int>(numbers_.size()), row = n / 2 + (n / 2 >= seed_row ? 1 : 0);
+    grid->addWidget(text, row, n % 2 * 2);
+    grid->addWidget(field, row, n % 2 * 2 + 1);
     numbers_.push_back({text, field, of, has});
   };
   using F = WindFeatureItem;
@@ -116,7 +119,7 @@ QWidget* WindFeaturesForm::make_fields() {
       "feature_direction", "to", -360, 360, " °", "Where it blows to, counter-clockwise from east",
       [](F& f) -> double& { return f.direction_deg; }, has_direction);
   add(
-      "feature_length", "half length", 0.1, 1e5, " m", "Half the length of the jet",
+      "feature_length", "½ length", 0.1, 1e5, " m", "Half the length of the jet",
       [](F& f) -> double& { return f.length; }, has_direction);
   add(
       "feature_scale", "eddy size", 0.1, 1e5, " m", "Size of the eddies",
@@ -124,14 +127,29 @@ QWidget* WindFeaturesForm::make_fields() {
   add(
       "feature_life_time", "life time", 0.01, 1e6, " s", "Simulated time in which the eddies change",
       [](F& f) -> double& { return f.life_time; }, has_eddies);
+  add(
+      "feature_begin", "begin", 0, 1e12, " s", "Simulated time from which it is there",
+      [](F& f) -> double& { return f.begin; }, all_have);
+  add(
+      "feature_end", "end", 0, 1e12, " s", "Simulated time from which it is gone; 0: never",
+      [](F& f) -> double& { return f.end; }, all_have);
+  add(
+      "feature_velocity_x", "to east", -100, 100, " m/s", "How fast its centre moves, from x, y at `begin`",
+      [](F& f) -> double& { return f.velocity.x; }, all_have);
+  add(
+      "feature_velocity_y", "to north", -100, 100, " m/s", "How fast its centre moves, from x, y at `begin`",
+      [](F& f) -> double& { return f.velocity.y; }, all_have);
+  for (const Number& number : numbers_)
+    if (number.field->objectName() == "feature_end") number.field->setSpecialValueText("never");
   seed_ = new QSpinBox;
   seed_->setObjectName("feature_seed");
   seed_->setMaximum(std::numeric_limits<int>::max());
-  seed_->setMaximumWidth(numbers_.front().field->maximumWidth());
+  seed_->setMinimumWidth(numbers_.front().field->minimumWidth());
   seed_label_ = new QLabel("seed");
-  form->addRow(seed_label_, seed_);
+  grid->addWidget(seed_label_, seed_row, 0);
+  grid->addWidget(seed_, seed_row, 1);
   auto* const apply_button = button("apply_feature", "Apply", "Gives the chosen feature these numbers");
-  form->addRow(apply_button);
+  grid->addWidget(apply_button, last_row, 0, 1, 4);
   connect(apply_button, &QPushButton::clicked, this, &WindFeaturesForm::apply);
   return fields;
 }

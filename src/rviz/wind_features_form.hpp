@@ -11,7 +11,6 @@
 #include "src/rviz/wind_features.hpp"
 
 class QDoubleSpinBox;
-class QFormLayout;
 class QSpinBox;
 class QTableWidget;
 

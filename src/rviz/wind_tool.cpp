@@ -93,7 +93,7 @@ const WindFeatureItem* WindTool::pointed_at() const {
   const WindFeatureItem* nearest = nullptr;
   double nearest_distance = 0;
   for (const WindFeatureItem& f : features_) {
-    const double away = render::distance(mouse, {f.center.x, f.center.y});
+    const double away = render::distance(mouse, centre_at(f, time_));
     if (away > std::max(cross_of(f), pointing_pixels * pixel)) continue;
     if (nearest && away >= nearest_distance) continue;
     nearest = &f;
@@ -163,8 +163,7 @@ void WindTool::drag(rviz::ViewportMouseEvent& event) {
   if (!dragged_) return;
   const render::Place mouse = terrain_->in_terrain_frame(*hovered_);
   if (action_ == Action::move) {
-    made_.center.x = mouse.x;
-    made_.center.y = mouse.y;
+    put_at(made_, mouse, time_);
     return;
   }
   const double away = std::clamp(render::distance(mouse, {made_.center.x, made_.center.y}), least, most);
@@ -219,6 +218,7 @@ void WindTool::tell(bool success, const std::string& text) {
 void WindTool::update(float, float) {
   if (const WindFeatureListConstPtr list = list_.take()) {
     features_ = list->features;
+    time_ = list->sim_time;
     features_changed_ = true;
   }
   if (!terrain_->update()) return;
@@ -230,7 +230,7 @@ void WindTool::update(float, float) {
 std::vector<SurfaceMarks::Line> WindTool::draped(const WindFeatureItem& feature, unsigned alpha) const {
   const render::Place corner = terrain_->in_terrain_frame({0, 0, 0});
   std::vector<SurfaceMarks::Line> lines;
-  for (std::vector<render::Place> line : outline(feature)) {
+  for (std::vector<render::Place> line : outline(feature, time_)) {
     for (render::Place& place : line) place = {place.x - corner.x, place.y - corner.y};
     lines.push_back({render::drape(terrain_->field(), line),
                      (feature_colour(feature) & 0xffffffu) | static_cast<render::PackedColour>(alpha) << 24});
@@ -249,7 +249,8 @@ void WindTool::draw_features() {
   if (same) return;
   std::vector<SurfaceMarks::Line> all;
   for (const WindFeatureItem& f : features_) {
-    for (SurfaceMarks::Line& line : draped(f, f.id != 0 && f.id == now.moved ? 0x50 : 0xff)) {
+    const bool faint = (f.id != 0 && f.id == now.moved) || !is_there(f, time_);
+    for (SurfaceMarks::Line& line : draped(f, faint ? 0x50 : 0xff)) {
       if (&f == pointed) line.colour = render::pack({1, 1, 1});
       all.push_back(std::move(line));
     }

@@ -81,6 +81,7 @@ class WindTool : public rviz::Tool {
   ServiceCaller caller_;
 
   WindFeatures features_;
+  double time_ = 0;                       ///< simulated time of that list [s]
   int last_id_ = 0, waiting_ = 0;         ///< the id of the last feature placed here; calls without an answer
   std::optional<render::Point> hovered_;  ///< what the mouse points at
   Ogre::Viewport* viewport_ = nullptr;    ///< in which the mouse was last

@@ -100,6 +100,9 @@ void check_dependencies(const Scenario& s, ValidationErrors& errors) {
     if (const int id = s.wind_features[n].id; id != 0 && !ids.insert(id).second)
       errors.add("wind.features." + std::to_string(n) + ".id",
                  std::to_string(id) + " is already the id of another feature");
+  for (std::size_t n = 0; n < s.wind_features.size(); ++n)
+    if (!ends_after_begin(s.wind_features[n]))
+      errors.add("wind.features." + std::to_string(n) + ".end", end_before_begin);
   for (std::size_t n = 0; n < s.terrain.size(); ++n)
     if (const auto* discs = std::get_if<DiscsStep>(&s.terrain[n]);
         discs && discs->radius_high < discs->radius_low)

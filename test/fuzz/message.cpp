@@ -32,7 +32,8 @@ const Words terrain_words{"",       "rover",   "tilted",    "sand",    "bedrock"
                           "mask",   "mono8",   "mono16",    "32FC1"};
 const Words plant_words{"",       "rover",   "plant",     "clear",   "bush",   "tree",
                         "circle", "ellipse", "rectangle", "capsule", "polygon"};
-const Words wind_words{"", "rover", "add", "change", "remove", "clear", "vortex", "jet", "turbulence"};
+const Words wind_words{"",      "rover",  "add", "change",     "remove",
+                       "clear", "vortex", "jet", "turbulence", "sink"};
 const Words schedule_words{"timeline", "rose"};
 const Words weather_words{"rain_rate", "rain_share", "evaporation",   "ground_evaporation",
                           "sea",       "sea_level",  "wave_strength", "wave_period",

@@ -91,6 +91,7 @@ command::EditWind RandomCommands::wind_edit(const Simulation& simulation) {
   command::EditWind edit;
   randomise(edit);
   randomise(edit.feature);
+  if (!one_in(20)) edit.feature.begin = between(0, 20), edit.feature.end = one_in(2) ? 0 : between(20, 40);
   const std::vector<WindFeature>& there = simulation.scenario().wind_features;
   if (edit.operation == WindEdit::add)
     edit.feature.id = static_cast<int>(1 + below(5));

@@ -103,6 +103,9 @@ void check_feature_fields(const EditWindRequest& request, const std::string& why
     require_left_out(request.center, "center", why);
     require_left_out(request.radius, "radius", why);
     require_left_out(request.speed, "speed", why);
+    require_left_out(request.begin, "begin", why);
+    require_left_out(request.end, "end", why);
+    require_left_out(request.velocity, "velocity", why);
   }
   if (kind != WindFeatureKind::jet) {
     require_left_out(request.direction_deg, "direction_deg", why);
@@ -136,6 +139,19 @@ command::EditWind wind_edit_command(const EditWindRequest& request, const Terrai
   feature.y = center.y();
   feature.radius = to_float(request.radius);
   feature.speed = to_float(request.speed);
+  require_finite(request.begin, "begin");
+  require_finite(request.end, "end");
+  require_finite(request.velocity.x, "velocity.x");
+  require_finite(request.velocity.y, "velocity.y");
+  if (!(request.velocity.z == 0))
+    throw ConfigError("velocity.z: " + std::to_string(request.velocity.z) +
+                      " must be 0: features move over the map");
+  const tf2::Vector3 velocity =
+      transform.getBasis() * tf2::Vector3(request.velocity.x, request.velocity.y, 0);
+  feature.begin = request.begin;
+  feature.end = request.end;
+  feature.velocity_x = to_float(velocity.x());
+  feature.velocity_y = to_float(velocity.y());
   check_feature_fields(request, "kind '" + request.kind + "' does not use it", feature.kind);
   if (feature.kind == WindFeatureKind::jet) {
     require_finite(request.direction_deg, "direction_deg");

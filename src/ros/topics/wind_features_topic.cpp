@@ -19,6 +19,10 @@ WindFeatureItem message_of(const WindFeature& feature) {
   m.center.y = feature.y;
   m.radius = static_cast<double>(feature.radius);
   m.speed = static_cast<double>(feature.speed);
+  m.begin = feature.begin;
+  m.end = feature.end;
+  m.velocity.x = static_cast<double>(feature.velocity_x);
+  m.velocity.y = static_cast<double>(feature.velocity_y);
   if (feature.kind == WindFeatureKind::jet) {
     m.direction_deg = static_cast<double>(feature.direction_deg);
     m.length = static_cast<double>(feature.length);

@@ -170,6 +170,8 @@ std::vector<WindFeature> edited_features(const command::EditWind& command,
     features.erase(found);
   } else {
     check_ranges(command.feature, "edit_wind");
+    if (!ends_after_begin(command.feature))
+      throw ConfigError(std::string("edit_wind: end: ") + end_before_begin);
     if (known)
       *found = command.feature;
     else if (features.size() < max_wind_features)

@@ -69,7 +69,9 @@ struct LocalWind {
   /// The perturbation at the time of a step.
   void update(StepContext& c) {
     if (!features) return;
-    for (wind_features::Prepared& feature : prepared) wind_features::set_time(feature, c.time());
+    const GridParameters& grid = c.scenario().grid;
+    for (wind_features::Prepared& feature : prepared)
+      wind_features::set_time(feature, c.terrain.grid, grid.origin_x, grid.origin_y, c.time());
     features.upload(prepared);
     with_backend(c.exec(), [&](auto& e) {
       wind_features::step(e, c.terrain.grid, features, c.fields.scratch<float>(0), perturbation_x.data(),

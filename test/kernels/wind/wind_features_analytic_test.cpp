@@ -36,6 +36,16 @@ struct Perturbation {
     for (std::size_t n = 0; n < u.size(); ++n) most = std::max(most, std::hypot<double>(u[n], v[n]));
     return most;
   }
+  /// The greatest change from one cell to the next; over the seam of a periodic grid, too.
+  double greatest_step() const {
+    double worst = 0;
+    const int last = grid.periodic_x ? 0 : 1;
+    for (int y = 0; y < grid.height - last; ++y)
+      for (int x = 0; x < grid.width - last; ++x)
+        for (const wind::Vector next : {at(x + 1, y), at(x, y + 1)})
+          worst = std::max(worst, std::hypot<double>(next.x - at(x, y).x, next.y - at(x, y).y));
+    return worst;
+  }
   /// Central differences; an open grid is searched two cells from its edge and beyond.
   double greatest_divergence() const {
     double worst = 0;
@@ -63,7 +73,7 @@ WindFeature feature(WindFeatureKind kind, double x, double y, float radius, floa
 TEST_P(WindField, FeaturesAreSmoothAcrossTheSeamAtAnyRadius) {
   for (const bool periodic : {true, false})
     for (const WindFeatureKind kind :
-         {WindFeatureKind::vortex, WindFeatureKind::jet, WindFeatureKind::turbulence})
+         {WindFeatureKind::vortex, WindFeatureKind::jet, WindFeatureKind::turbulence, WindFeatureKind::sink})
       for (const float radius : {10.0f, 40.0f, 90.0f, 180.0f, 1e4f})
         for (const auto& [x, y] : {std::pair{90.0, 70.0}, {1.0, 139.0}, {179.0, 70.0}, {0.0, 0.0}}) {
           SCOPED_TRACE(std::string(wind_feature_kinds[static_cast<int>(kind)]) + " of radius " +
@@ -74,7 +84,10 @@ TEST_P(WindField, FeaturesAreSmoothAcrossTheSeamAtAnyRadius) {
             f.direction_deg = direction;
             const Perturbation wind(exec(), Grid{90, 70, 2, periodic, periodic}, {f}, 12.5);
             EXPECT_LE(wind.fastest(), kind == WindFeatureKind::turbulence ? 4 * 3 : 1.01 * 3);
-            EXPECT_LE(wind.greatest_divergence(), radius > 1000 ? 3e-3 : 2e-4);
+            if (kind != WindFeatureKind::sink)
+              EXPECT_LE(wind.greatest_divergence(), radius > 1000 ? 3e-3 : 2e-4);
+            else
+              EXPECT_LE(wind.greatest_step(), 3 * 2 * 2.2 / std::min(radius, 140.0f)) << "it jumps";
           }
         }
 }
@@ -97,6 +110,57 @@ TEST_P(WindField, VortexAndJetHaveTheirSpeedAndSense) {
   EXPECT_NEAR(wind(jet, 100, 100).y, 6, 0.05);
   EXPECT_NEAR(wind(jet, 100, 100).x, 0, 1e-4);
   EXPECT_LT(wind(jet, 135, 100).y, 0) << "return flow beside it";
+}
+
+/// speed (r/R) exp(½ (1 − r²/R²)) towards the centre: fastest at the radius, calm in the centre and far away.
+TEST_P(WindField, ASinkFlowsTowardsItsCentre) {
+  for (const bool periodic : {false, true})
+    for (const float speed : {5.0f, -5.0f}) {
+      const Perturbation wind(exec(), Grid{201, 201, 1, periodic, periodic},
+                              {feature(WindFeatureKind::sink, 100.5, 100.5, 20, speed)});
+      for (const int away : {5, 20, 33}) {
+        SCOPED_TRACE(std::to_string(speed) + " m/s, " + std::to_string(away) + " m away");
+        const double ratio = away / 20.0, law = speed * ratio * std::exp(0.5 * (1 - ratio * ratio));
+        const double slack = periodic ? 0.03 : 1e-5;  // on a torus a distance is almost one
+        const auto expect = [&](int x, int y, double u, double v) {
+          EXPECT_NEAR(wind.at(100 + x, 100 + y).x, u, slack);
+          EXPECT_NEAR(wind.at(100 + x, 100 + y).y, v, slack);
+        };
+        expect(away, 0, -law, 0);
+        expect(-away, 0, law, 0);
+        expect(0, away, 0, -law);
+        expect(0, -away, 0, law);
+      }
+      EXPECT_EQ(wind.at(100, 100).x, 0);
+      EXPECT_EQ(wind.at(100, 100).y, 0);
+      EXPECT_NEAR(wind.fastest(), 5, 0.03);
+      EXPECT_LT(std::abs(wind.at(100 + 90, 100).x), 0.05);
+    }
+}
+
+/// Bit for bit as a feature that stands where the moving one is at that time, over the seams of the torus,
+/// too.
+TEST_P(WindField, FeaturesComeGoAndMove) {
+  const Grid grid{60, 50, 2, true, true};
+  for (const WindFeatureKind kind :
+       {WindFeatureKind::vortex, WindFeatureKind::jet, WindFeatureKind::turbulence, WindFeatureKind::sink}) {
+    WindFeature moving = feature(kind, 20, 30, 12, 4);
+    moving.begin = 10;
+    moving.end = 60;
+    moving.velocity_x = 3;
+    moving.velocity_y = -1.5f;
+    for (const double time : {0.0, 9.999, 60.0, 1e6})
+      EXPECT_EQ(Perturbation(exec(), grid, {moving}, time).fastest(), 0) << time;
+    for (const double time : {10.0, 10.5, 45.25, 59.999}) {
+      SCOPED_TRACE(std::to_string(time) + " s, kind " + std::to_string(static_cast<int>(kind)));
+      const WindFeature there =
+          feature(kind, 20 + 3 * (time - 10), 30 - 1.5 * (time - 10), moving.radius, moving.speed);
+      const Perturbation wind(exec(), grid, {moving}, time), expected(exec(), grid, {there}, time);
+      EXPECT_EQ(wind.u, expected.u);
+      EXPECT_EQ(wind.v, expected.v);
+      EXPECT_GT(wind.fastest(), 0.5);
+    }
+  }
 }
 
 /// The speed of turbulence is its root mean square in the middle, whenever that is, and it renews itself in a

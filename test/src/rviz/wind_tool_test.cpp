@@ -87,6 +87,38 @@ TEST_F(WindTool, ADragGivesAJetItsDirectionAndLength) {
   EXPECT_EQ(there[0].radius, 6);
 }
 
+TEST_F(WindTool, ADragPlacesASink) {
+  set_tool(tool_, "Kind", "Sink");
+  drag({60, 20}, {70, 20}, 5);
+  const WindFeatures there = features(1);
+  ASSERT_EQ(there.size(), 1u);
+  EXPECT_EQ(there[0].kind, EditWind::Request::SINK);
+  EXPECT_NEAR(there[0].radius, 10, to_a_pixel);
+  save("wind_sink");
+}
+
+/// What moves by itself is where it is now, and goes on from where it is put.
+TEST_F(WindTool, AMovingFeatureIsTakenWhereItIs) {
+  EditWind::Request moving;
+  moving.operation = EditWind::Request::ADD;
+  moving.kind = EditWind::Request::VORTEX;
+  moving.id = 3;
+  moving.center.x = 40, moving.center.y = 20, moving.radius = 8, moving.speed = 4;
+  moving.velocity.x = 1;
+  EXPECT_TRUE(call<EditWind>("edit_wind", moving).success);
+  features(1);
+  node_test::step(20);  // of a second
+  ASSERT_TRUE(window_->run_until([&] { return list_.last().sim_time == 20; }));
+  EXPECT_TRUE(window_->run_until([&] {  // the tool has heard of it, too
+    drag({60, 20}, {60, 40}, 5, Qt::ControlModifier);
+    wait_for(tool_);
+    return says("moved");
+  })) << report();
+  ASSERT_TRUE(window_->run_until([&] { return list_.last().features.at(0).center.y > 30; }));
+  expect_at(list_.last().features.at(0), {40, 40});
+  EXPECT_EQ(list_.last().features.at(0).velocity.x, 1);
+}
+
 TEST_F(WindTool, EachPatchOfTurbulenceHasItsOwnSeed) {
   set_tool(tool_, "Kind", "Turbulence");
   set_tool(tool_, "Eddy Size", 3);
@@ -225,7 +257,7 @@ TEST(WindOutline, ArrowsTurnAndPointAsTheWindDoes) {
   for (const double speed : {3.0, -3.0}) {
     vortex.speed = speed;
     int heads = 0;
-    for (const auto& line : desert_sim::outline(vortex)) {
+    for (const auto& line : desert_sim::outline(vortex, 0)) {
       if (line.size() != 3) continue;
       ++heads;
       const double x = line[1].x - 100, y = line[1].y, dx = line[1].x - line[0].x, dy = line[1].y - line[0].y;
@@ -241,12 +273,48 @@ TEST(WindOutline, ArrowsTurnAndPointAsTheWindDoes) {
   jet.length = 20;
   for (const double speed : {3.0, -3.0}) {
     jet.speed = speed;
-    for (const auto& line : desert_sim::outline(jet)) {
+    for (const auto& line : desert_sim::outline(jet, 0)) {
       if (line.size() != 3) continue;
       EXPECT_NEAR(line[1].y, std::copysign(20, speed), 1e-9);
       EXPECT_GT((line[1].y - line[0].y) * speed, 0);
     }
   }
+}
+
+TEST(WindOutline, ArrowsOfASinkPointInwards) {
+  WindFeatureItem sink;
+  sink.kind = EditWind::Request::SINK;
+  sink.radius = 10;
+  for (const double speed : {3.0, -3.0}) {
+    sink.speed = speed;
+    int heads = 0;
+    for (const auto& line : desert_sim::outline(sink, 0)) {
+      if (line.size() != 3) continue;
+      ++heads;
+      const double dx = line[1].x - line[0].x, dy = line[1].y - line[0].y;
+      EXPECT_LT((line[1].x * dx + line[1].y * dy) * speed, 0);
+    }
+    EXPECT_EQ(heads, 4);
+  }
+}
+
+TEST(WindOutline, FeaturesComeGoAndMove) {
+  WindFeatureItem moving;
+  moving.begin = 10;
+  moving.end = 20;
+  moving.center.x = 5;
+  moving.velocity.x = 2;
+  moving.velocity.y = -1;
+  EXPECT_FALSE(desert_sim::is_there(moving, 9.5));
+  EXPECT_TRUE(desert_sim::is_there(moving, 10));
+  EXPECT_FALSE(desert_sim::is_there(moving, 20));
+  EXPECT_EQ(desert_sim::centre_at(moving, 14).x, 13);
+  EXPECT_EQ(desert_sim::centre_at(moving, 14).y, -4);
+  desert_sim::put_at(moving, {0, 0}, 14);
+  EXPECT_EQ(desert_sim::centre_at(moving, 14).x, 0);
+  EXPECT_EQ(desert_sim::centre_at(moving, 15).y, -1);
+  moving.end = 0;
+  EXPECT_TRUE(desert_sim::is_there(moving, 1e9));
 }
 
 TEST(WindOutline, FreeIdsAreNotGivenTwice) {

@@ -44,6 +44,7 @@ TEST(Loader, NamesUnknownKeysAndWhatIsKnown) {
   expect_refused("terrain: [uniform: {layr: sand}]", {"terrain.0.uniform.layr", "layer"});
   expect_refused("terrain: [unifrom: {layer: sand}]", {"terrain.0", "unifrom", "uniform"});
   expect_refused("wind: {features: [{kind: vortex, strength: 2}]}", {"wind.features.0.strength"});
+  expect_refused("wind: {features: [{begin: 5, end: 5}]}", {"wind.features.0.end", "above `begin`, or 0"});
 }
 
 TEST(Loader, NamesTextWhereANumberIsExpected) {

@@ -102,6 +102,8 @@ Scenario scenario_at(const std::function<double()>& share) {
       99.0 * static_cast<double>(s.grid.cell_size) / static_cast<double>(s.run.time_step);
   s.get<SaltationParameters>().influx =
       std::min(s.get<SaltationParameters>().influx, static_cast<float>(most_influx));
+  for (WindFeature& feature : s.wind_features)
+    if (!ends_after_begin(feature)) feature.begin = std::min(feature.begin, 0.5 * feature.end);
   s.wind_features[1].id = std::max(s.wind_features[0].id - 1, 0);
   auto& discs = std::get<DiscsStep>(s.terrain[5]);
   discs.radius_low = std::min(discs.radius_low, discs.radius_high);

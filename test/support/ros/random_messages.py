@@ -16,13 +16,13 @@ WORDS = {
     "change": ["rain_rate", "rain_share", "evaporation", "ground_evaporation", "sea", "sea_level", "wave_strength", "springs"],
     "wind_kind": ["timeline", "rose", "constant"], "frame_id": ["", "", "", "map", "map", "rover"], "child_frame_id": ["rover", "map", "other"]}
 OPERATIONS = {"EditPlantsRequest": ["plant", "clear"], "EditWindRequest": ["add", "change", "remove", "clear"]}
-KINDS = {"EditWindRequest": ["vortex", "jet", "turbulence"], "SetWindScheduleRequest": ["timeline", "rose"]}
+KINDS = {"EditWindRequest": ["vortex", "jet", "turbulence", "sink"], "SetWindScheduleRequest": ["timeline", "rose"]}
 RANGES = {"x": (-6, 40), "y": (4, 40), "z": (0, 0), "position_x": (0, 30), "position_y": (10, 30), "length_x": (1, 6),
           "length_y": (1, 6), "speed": (0, 12), "direction_deg": (-180, 180), "angle_deg": (-180, 180), "inner": (0, 1),
           "density": (0, 0.3), "size": (0.01, 1), "rain_rate": (0, 1e-3), "rain_share": (0, 1), "evaporation": (0, 0.1),
           "ramp": (0, 3), "duration": (3, 20), "discharge": (0, 0.1), "wave_strength": (0, 0.1), "sea_level": (-2, 3),
           "value": (0, 1.5), "image_scale": (0, 2), "smooth_radius": (1, 4), "smooth_passes": (1, 4), "steps": (0, 3),
-          "width": (1, 4), "height": (1, 4), "id": (1, 5), "seed": (0, 99), "w": (1, 1),
+          "width": (1, 4), "height": (1, 4), "id": (1, 5), "begin": (0, 5), "end": (5, 20), "seed": (0, 99), "w": (1, 1),
           "horizon": (0, 30), "moments": (1, 4), "members": (0, 3), "gust_speed": (0, 1), "gust_direction_deg": (0, 90)}
 
 

@@ -89,7 +89,10 @@ inline std::vector<RequestField<desert_sim::EditWindRequest>> fields_of(const de
           request_field("length", &R::length, 8.0),
           request_field("scale", &R::scale, 2.0),
           request_field("life_time", &R::life_time, 5.0),
-          request_field("seed", &R::seed, 7)};
+          request_field("seed", &R::seed, 7),
+          request_field("begin", &R::begin, 3.0),
+          request_field("end", &R::end, 9.0),
+          request_field("velocity", &R::velocity, vector_of(3, 4))};
 }
 
 inline std::vector<RequestField<desert_sim::SetWindRequest>> fields_of(const desert_sim::SetWindRequest&) {

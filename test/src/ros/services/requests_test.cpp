@@ -146,7 +146,7 @@ TEST(Requests, EditPlantsRefusesWhatIsNotUsed) {
 
 TEST(Requests, EditWindRefusesWhatIsNotUsed) {
   const auto make = [](const EditWindRequest& request) { return wind_edit_command(request, frames); };
-  const std::set<std::string> all{"id", "kind", "center", "radius", "speed"};
+  const std::set<std::string> all{"id", "kind", "center", "radius", "speed", "begin", "end", "velocity"};
   EditWindRequest request;
   for (const char* operation : {"add", "change"}) {
     request.operation = operation;
@@ -161,6 +161,9 @@ TEST(Requests, EditWindRefusesWhatIsNotUsed) {
     for (const char* name : {"scale", "life_time", "seed"})
       EXPECT_NO_THROW(make(with(request, {name}))) << name;
     for (const char* name : {"direction_deg", "length"})
+      EXPECT_THROW(make(with(request, {name})), ConfigError) << name;
+    request.kind = "sink";
+    for (const char* name : {"direction_deg", "length", "scale", "life_time", "seed"})
       EXPECT_THROW(make(with(request, {name})), ConfigError) << name;
   }
   request = EditWindRequest();

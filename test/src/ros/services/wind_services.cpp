@@ -214,6 +214,7 @@ TEST_F(WindServices, WindFeaturesAreListedWithTheirIds) {
   vortex.id = 9;
   vortex.kind = EditWind::Request::VORTEX;
   vortex.center.x = 40, vortex.center.y = 12, vortex.radius = 7, vortex.speed = -2;
+  vortex.begin = 1, vortex.end = 1e9, vortex.velocity.x = 3;
   listed_after(added);
   const auto both = listed_after(vortex);
   ASSERT_EQ(both.size(), 2u);
@@ -225,6 +226,9 @@ TEST_F(WindServices, WindFeaturesAreListedWithTheirIds) {
   EXPECT_EQ(both[1].id, 9);
   EXPECT_EQ(both[1].kind, EditWind::Request::VORTEX);
   EXPECT_EQ(both[1].speed, -2);
+  EXPECT_EQ(both[1].begin, 1);
+  EXPECT_EQ(both[1].end, 1e9);
+  EXPECT_EQ(both[1].velocity.x, 3);
   EXPECT_EQ(both[1].length, 0) << "a vortex has none, as ~edit_wind wants it";
   EditWind::Request cleared;
   cleared.operation = EditWind::Request::CLEAR;
@@ -243,6 +247,12 @@ TEST_F(WindServices, EditWindRefuses) {
   request = jet("add");
   request.center.x = not_a_number;
   expect_refused<EditWind>("edit_wind", request, "center.x: nan", "finite");
+  request = jet("add");
+  request.velocity.z = 1;
+  expect_refused<EditWind>("edit_wind", request, "velocity.z", "must be 0");
+  request = jet("add");
+  request.begin = 4, request.end = 3;
+  expect_refused<EditWind>("edit_wind", request, "end", "above `begin`");
   request = jet("add");
   request.header.frame_id = "nowhere";
   expect_refused<EditWind>("edit_wind", request, "nowhere", "");

@@ -64,6 +64,42 @@ TEST_P(EditWind, AVortexTurnsTheWindAroundIt) {
   EXPECT_NEAR(at(20, 18) + at(20, 11), 10, 0.4) << "about the wind of 5 m/s";
 }
 
+/// A feature that comes and goes by itself, as if somebody had added and removed it at those times.
+TEST_P(EditWind, BeginsAndEndsByTheSimulatedTime) {
+  const test::TemporaryFolder folder;
+  command::EditWind timed = vortex(WindEdit::add);
+  timed.feature.begin = 3;
+  timed.feature.end = 6;
+  auto s = simulation(plain), edited = simulation(plain);
+  s->apply(timed);
+  test::run(*s, 2);
+  save_checkpoint(folder.path("a"), *s);
+  auto loaded = load_checkpoint(folder.path("a"), exec());
+  for (int step = 3; step <= 9; ++step) {
+    SCOPED_TRACE(step);
+    if (step == 3) test::run(*edited, 2);
+    test::run(*s, 1), test::run(*loaded, 1);
+    if (step == 4) edited->apply(vortex(WindEdit::add));  // the fourth step is that from 3 s on
+    if (step == 7) edited->apply(vortex(WindEdit::remove));
+    EXPECT_EQ(loaded->state().hash(), hash_after(*edited, 1));
+    EXPECT_EQ(loaded->state().hash(), s->state().hash());
+  }
+}
+
+TEST_P(EditWind, MovesWithItsVelocity) {
+  command::EditWind moving = vortex(WindEdit::add);
+  moving.feature.velocity_x = 2;
+  auto s = simulation(plain), edited = simulation(plain);
+  s->apply(moving);
+  command::EditWind standing = vortex(WindEdit::add);
+  for (int second = 0; second < 5; ++second) {
+    standing.feature.x = 140 + 2 * second;
+    edited->apply(standing);
+    standing.operation = WindEdit::change;
+    EXPECT_EQ(hash_after(*s, 1), hash_after(*edited, 1)) << second;
+  }
+}
+
 TEST_P(EditWind, IsInACheckpoint) {
   const test::TemporaryFolder folder;
   auto s = simulation(plain);
@@ -98,6 +134,10 @@ TEST_P(EditWind, RefusesAndChangesNothing) {
   refused(edit, "radius");
   edit.feature.radius = std::numeric_limits<float>::quiet_NaN();
   refused(edit, "radius");
+  edit = vortex(WindEdit::change);
+  edit.feature.begin = 5;
+  edit.feature.end = 4;
+  refused(edit, "end: must be above `begin`");
   edit = vortex(WindEdit::add);
   for (int id = 8; id < 8 + static_cast<int>(max_wind_features) - 1; ++id) {
     edit.feature.id = id;
