@@ -74,6 +74,8 @@ const char* layer_of(Material material) { return row(material).layer; }
 bool is_material(Material material) { return width_of_range(material) == 0; }
 
 std::string problem_of(const Brush& brush) {
+  if (!brush.mask.empty() && brush.material == Material::plants)
+    return "Plants take no Mask File: leave it empty.";
   const bool can = brush.operation == Operation::flatten  ? row(brush.material).flattens
                    : brush.operation == Operation::smooth ? row(brush.material).smooths
                                                           : true;
@@ -94,10 +96,17 @@ EditTerrain::Request terrain_request(const Brush& brush, const render::Capsule& 
   request.stroke = stroke;
   request.inner = brush.inner;
   set_shape(request, capsule, brush.radius);
+  if (!brush.mask.empty()) {
+    request.shape = "patch";
+    request.radius_y = brush.radius;
+    request.image_file = brush.mask;
+    request.image_use = "mask";
+    request.inner = 0;
+  }
   const bool adds = brush.operation == Operation::add;
   if (brush.material == Material::obstacle) {  // any value above 0 is solid
     request.merge = "replace";
-    request.inner = 1;
+    request.inner = brush.mask.empty() ? 1 : 0;
     request.value = adds ? 1 : 0;
     return request;
   }
@@ -108,7 +117,7 @@ EditTerrain::Request terrain_request(const Brush& brush, const render::Capsule& 
       request.value = brush.strength;
       if (!is_material(brush.material))
         request.value = std::min(request.value, width_of_range(brush.material));
-      request.value *= share_of_depth(capsule, brush.radius, brush.inner);
+      if (brush.mask.empty()) request.value *= share_of_depth(capsule, brush.radius, brush.inner);
       break;
     case Operation::flatten:
       request.merge = "replace";

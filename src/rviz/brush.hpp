@@ -39,6 +39,8 @@ struct Brush {
   double inner = 0.5;     ///< fraction of the radius with full weight, 0 … 1
   std::string species;    ///< plants: what is planted; what is removed, empty for all
   double density = 0.1;   ///< plants that a pass puts on each square metre [1/m²]
+  std::string
+      mask;  ///< a raster below ~data_dir, whose values weigh the brush in its square; empty: a round brush
   double size = 0.5;  ///< plants: their radius relative to the largest for which there is room, 0.001 … 1
 };
 
@@ -51,7 +53,7 @@ bool is_material(Brush::Material material);
 /// Why there is no such brush, such as one that smooths plants; empty if there is.
 std::string problem_of(const Brush& brush);
 
-/// For all materials but plants. `level` is what `flatten` makes of the layer: the value where the stroke
+/// For all materials but plants. With a mask a capsule is to be a circle, whose square is stamped. `level` is what `flatten` makes of the layer: the value where the stroke
 /// began [m].
 EditTerrain::Request terrain_request(const Brush& brush, const render::Capsule& capsule,
                                      const std::string& stroke, double level);

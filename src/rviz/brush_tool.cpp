@@ -65,6 +65,11 @@ BrushTool::BrushTool() {
              parent);
   inner_ = number("Inner Fraction", 0.5f, 0, 1,
                   "Full strength up to this fraction of the radius, from where it falls to 0.", parent);
+  mask_ = new rviz::StringProperty("Mask File", "",
+                                   "A raster below the node's ~data_dir: a click stamps its square, full "
+                                   "strength where the raster is highest, "
+                                   "none where it is lowest. Empty: a round brush that paints.",
+                                   parent);
   species_ = new rviz::EditableEnumProperty(
       "Species", "", "Of plants: what is planted, or removed (empty: all); the node's species are listed.",
       parent);
@@ -126,6 +131,7 @@ Brush BrushTool::brush(bool shift) const {
   result.radius = static_cast<double>(radius_->getFloat());
   result.strength = static_cast<double>(strength_->getFloat());
   result.inner = static_cast<double>(inner_->getFloat());
+  result.mask = mask_->getStdString();
   result.species = species_->getStdString();
   result.density = static_cast<double>(density_->getFloat());
   result.size = static_cast<double>(size_->getFloat());
@@ -177,7 +183,10 @@ void BrushTool::press(bool shift) {
   report_ = problem;
   if (failed_ || !hovered_) return;
   client_->begin(chosen);
-  painting_ = true;
+  painting_ = chosen.mask.empty();
+  if (painting_) return;
+  client_->move(terrain_->in_terrain_frame(*hovered_));
+  client_->end();
 }
 
 void BrushTool::release() {
@@ -221,7 +230,14 @@ void BrushTool::draw() {
     return SurfaceMarks::Line{render::drape(terrain_->field(), render::circle(centre, radius)), colour};
   };
   std::vector<SurfaceMarks::Line> lines = {ring(now.radius)};
-  const bool fades = now.material != Brush::Material::plants && now.material != Brush::Material::obstacle;
+  if (!now.mask.empty()) {
+    const double r = now.radius, x = centre.x, y = centre.y;
+    lines = {{render::drape(terrain_->field(),
+                            {{x - r, y - r}, {x + r, y - r}, {x + r, y + r}, {x - r, y + r}, {x - r, y - r}}),
+              colour}};
+  }
+  const bool fades = now.mask.empty() && now.material != Brush::Material::plants &&
+                     now.material != Brush::Material::obstacle;
   if (fades && now.inner > 0 && now.inner < 1) {
     lines.push_back(ring(now.inner * now.radius));
     lines.back().colour = (colour & 0xffffffu) | 0x70000000u;

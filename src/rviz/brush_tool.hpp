@@ -61,7 +61,7 @@ class BrushTool : public rviz::Tool {
   /// Asks the node for the names of its species.
   void ask_for_species();
 
-  rviz::StringProperty* node_;
+  rviz::StringProperty *node_, *mask_;
   rviz::EditableEnumProperty* species_;
   rviz::EnumProperty *material_, *operation_;
   rviz::FloatProperty *radius_, *strength_, *inner_, *density_, *size_;

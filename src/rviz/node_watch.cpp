@@ -121,7 +121,8 @@ void NodeWatch::subscribe(const std::string& node) {
 }
 
 void NodeWatch::unsubscribe() {
-  status_subscriber_ = parameter_subscriber_ = feature_subscriber_ = ros::Subscriber();
+  status_subscriber_ = parameter_subscriber_ = description_subscriber_ = feature_subscriber_ =
+      ros::Subscriber();
 }
 
 void NodeWatch::loop() {
@@ -140,7 +141,6 @@ void NodeWatch::loop() {
       rover = rover_;
     }
     if (other_node) {
-      status_subscriber_ = parameter_subscriber_ = description_subscriber_ = ros::Subscriber();
       unsubscribe();
       heard_ = looked = looked_for_fleet = Clock::time_point();
       fleet_.forget();
@@ -158,7 +158,6 @@ void NodeWatch::loop() {
     const Presence presence = look(node);
     // A new subscription also finds a node that was started anew under a new master, and is sent the status
     // at once.
-    status_subscriber_ = parameter_subscriber_ = description_subscriber_ = ros::Subscriber();
     unsubscribe();
     if (presence == Presence::alive) subscribe(node);
     tell(seen_generation_, [this, presence] { set_presence(presence); });

@@ -73,8 +73,7 @@ class NodeWatch : public QObject {
   Presence presence_ = Presence::searching;  ///< in the thread of Qt
   ros::CallbackQueue queue_;                 ///< of the thread
   ros::NodeHandle node_handle_;              ///< with the queue above
-  ros::Subscriber status_subscriber_, parameter_subscriber_, description_subscriber_;
-  ros::Subscriber status_subscriber_, parameter_subscriber_, feature_subscriber_;
+  ros::Subscriber status_subscriber_, parameter_subscriber_, description_subscriber_, feature_subscriber_;
   Clock::time_point heard_;       ///< when the last status came
   unsigned seen_generation_ = 0;  ///< the one that the thread works for
   Fleet fleet_;

@@ -11,7 +11,7 @@ namespace {
 
 /// Within the far clip distance of rviz's cameras, and so far that other cameras of the scene see it as
 /// sky, too [m].
-constexpr float radius = 2e4F;
+constexpr float dome_radius = 2e4F;
 
 }  // namespace
 
@@ -19,7 +19,7 @@ Sky::Sky(Ogre::SceneNode* root)
     : node_(root->createChildSceneNode()),
       dome_(std::make_unique<MeshObject>(node_, materials::sky(), Ogre::RenderOperation::OT_TRIANGLE_LIST)) {
   dome_->setRenderQueueGroup(Ogre::RENDER_QUEUE_SKIES_EARLY);
-  dome_->set_mesh(render::sky_dome(radius));
+  dome_->set_mesh(render::sky_dome(dome_radius));
   hide();
 }
 

@@ -5,6 +5,7 @@
 #include "kernels/field/surface.hpp"
 #include "kernels/plants/marking.hpp"
 #include "kernels/rover/traversability.hpp"
+#include "kernels/sand/saltation.hpp"
 #include "kernels/view/layer_values.hpp"
 #include "src/render/colour.hpp"
 #include "src/simulation/views/view_sections.hpp"

@@ -82,6 +82,28 @@ TEST_F(RvizTools, AStrokeIsSeenWhileItIsPainted) {
   wait_for(brush);
 }
 
+TEST_F(RvizTools, AMaskIsStampedByAClick) {
+  rviz::Tool* const brush = use_brush();
+  const std::string start = hash();
+  set_tool(brush, "Mask File", "stamp.asc");
+  set_tool(brush, "Radius", 16.0);
+  set_tool(brush, "Strength", 2.0);
+  mouse(QEvent::MouseMove, {65, 25}, Qt::NoButton);
+  save("mask");
+  click({65, 25});
+  wait_for(brush);
+  const std::vector<float> stamped = layer("sand_depth");
+  EXPECT_NEAR(static_cast<double>(at(stamped, {55, 35})), 2.5, 0.3) << text(brush, "report");
+  EXPECT_NEAR(static_cast<double>(at(stamped, {75, 15})), 0.5, 1e-3);
+  EXPECT_EQ(at(stamped, {65, 45}), 0.5f);
+  key(Qt::Key_Z);
+  wait_for(brush);
+  EXPECT_EQ(hash(), start);
+  set_tool(brush, "Material", "Plants");
+  click({65, 25});
+  EXPECT_NE(text(brush, "report").find("Mask File"), std::string::npos) << text(brush, "report");
+}
+
 /// What is no material: shares of 1, which undo takes back.
 TEST_F(RvizTools, VegetationAndErosionResistanceArePaintedAndUndone) {
   rviz::Tool* const brush = use_brush();
