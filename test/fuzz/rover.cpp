@@ -83,7 +83,7 @@ class Node {
   }
 
  private:
-  MapGround ground() const { return {maps_, 0.3, true}; }
+  MapGround ground() const { return {maps_, 0.3, 1, true}; }
 
   /// A map of one of the layers: any message, or one that fits the others.
   void take_layer(FuzzedDataProvider& data) {

@@ -58,6 +58,8 @@ MicroReliefStatePtr micro_relief_message(const TerrainState& state, const std::s
   message->wind_above = vector_of(s.wind_above);
   message->repose_tangent = s.micro_relief.repose_tangent;
   message->moisture_capacity = s.micro_relief.moisture_capacity;
+  message->moisture_depth = s.micro_relief.moisture_depth;
+  message->moisture_cutoff = s.micro_relief.moisture_cutoff;
   message->periodic_x = s.periodic_x;
   message->periodic_y = s.micro_relief.periodic_y;
   return message;
@@ -76,6 +78,8 @@ Snapshot snapshot_of(const MicroReliefState& m) {
   check_number(m.wind_above.y, -fastest, fastest, "wind_above.y", errors);
   check_number(double{m.repose_tangent}, least, most, "repose_tangent", errors);
   check_number(double{m.moisture_capacity}, least, most, "moisture_capacity", errors);
+  check_number(double{m.moisture_depth}, least, most, "moisture_depth", errors);
+  check_number(double{m.moisture_cutoff}, least, most, "moisture_cutoff", errors);
   errors.throw_if_any();
   s.step = m.step;
   s.time = m.sim_time;
@@ -83,6 +87,8 @@ Snapshot snapshot_of(const MicroReliefState& m) {
   s.micro_relief.seed = m.seed;
   s.micro_relief.repose_tangent = m.repose_tangent;
   s.micro_relief.moisture_capacity = m.moisture_capacity;
+  s.micro_relief.moisture_depth = m.moisture_depth;
+  s.micro_relief.moisture_cutoff = m.moisture_cutoff;
   s.periodic_x = m.periodic_x;
   s.periodic_y = s.micro_relief.periodic_y = m.periodic_y;
   return s;

@@ -86,9 +86,9 @@ GroundPoint MapGround::at(double x, double y) const {
   point.sand_depth = value(TerrainMaps::sand_depth, x, y);
   if (use_looseness_ && maps_.maps[TerrainMaps::looseness])
     point.looseness = value(TerrainMaps::looseness, x, y);
-  point.moisture =
-      relative_moisture(value(TerrainMaps::moisture, x, y),
-                        point.sand_depth + value(TerrainMaps::soil_depth, x, y), moisture_capacity_);
+  point.moisture = relative_moisture(value(TerrainMaps::moisture, x, y),
+                                     point.sand_depth + value(TerrainMaps::soil_depth, x, y),
+                                     moisture_capacity_, moisture_depth_);
   if (const std::shared_ptr<const LayerMap>& map = maps_.maps[TerrainMaps::obstacle])
     point.obstacle = map->cell_value(x, y).value_or(0);
   point.water = value(TerrainMaps::water_depth, x, y);

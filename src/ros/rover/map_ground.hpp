@@ -82,9 +82,10 @@ class MapGround : public GroundSource {
  public:
   /// `maps` must be complete for the ground. `use_looseness`: whether the layer says how loose the ground
   /// is. Where the maps have what micro_relief needs, the elevation has ripples and bumps.
-  MapGround(TerrainMaps maps, double moisture_capacity, bool use_looseness)
+  MapGround(TerrainMaps maps, double moisture_capacity, double moisture_depth, bool use_looseness)
       : maps_(std::move(maps)),
         moisture_capacity_(moisture_capacity),
+        moisture_depth_(moisture_depth),
         use_looseness_(use_looseness),
         micro_relief_(maps_.micro_relief()) {}
   const TerrainMaps& maps() const { return maps_; }
@@ -99,7 +100,8 @@ class MapGround : public GroundSource {
   double value(TerrainMaps::Which which, double x, double y) const;
 
   TerrainMaps maps_;
-  double moisture_capacity_;
+  double moisture_capacity_;  ///< of a metre of ground [m]
+  double moisture_depth_;     ///< down to which it holds moisture [m]
   bool use_looseness_;
   std::shared_ptr<const MapMicroRelief> micro_relief_;  ///< null: none
 };

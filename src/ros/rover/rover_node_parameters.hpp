@@ -37,6 +37,7 @@ struct RoverNodeParameters {
   double yaw_deg = 0;
   LoosenessSource looseness = LoosenessSource::automatic;
   double moisture_capacity = 0.3;
+  double moisture_depth = 1;
   std::string data_dir;
   std::string journal;
   bool micro_relief = false;
@@ -87,8 +88,9 @@ constexpr auto parameter_table(const RoverNodeParameters*) {
                 "terrain's "
                 "if any cell of it was not 0."),
       parameter("moisture_capacity", &P::moisture_capacity, 0.001, 1, "1",
-                "The scenario's avalanching.repose parameter of this name: moisture that a metre of ground "
-                "can hold."),
+                "The scenario's repose.moisture_capacity: moisture that a metre of ground can hold."),
+      parameter("moisture_depth", &P::moisture_depth, 0.01, 100, "m",
+                "The scenario's repose.moisture_depth, down to which ground holds moisture."),
       parameter("data_dir", &P::data_dir,
                 "States of the rover lie below this folder; empty: desert_sim in ROS's own "
                 "folder ($ROS_HOME, or ~/.ros)."),

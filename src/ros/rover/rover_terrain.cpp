@@ -107,7 +107,8 @@ void RoverTerrain::collect(std::uint64_t step, const std::function<void(TerrainM
 std::shared_ptr<const MapGround> RoverTerrain::ground_of(const TerrainMaps& maps) const {
   const bool use = parameters_.looseness == LoosenessSource::layer ||
                    (parameters_.looseness == LoosenessSource::automatic && maps.loose);
-  return std::make_shared<const MapGround>(maps, parameters_.moisture_capacity, use);
+  return std::make_shared<const MapGround>(maps, parameters_.moisture_capacity, parameters_.moisture_depth,
+                                           use);
 }
 
 std::shared_ptr<const MapGround> RoverTerrain::newest() {

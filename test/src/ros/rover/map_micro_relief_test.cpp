@@ -24,7 +24,7 @@ namespace {
 using node_test::map_of;
 using node_test::maps_of;
 
-constexpr double capacity = 0.3;
+constexpr double capacity = 0.3, deepest = 0.5;
 
 /// Dunes with a pond, a block and plants, after winds of two directions.
 TerrainState dunes(const std::string& boundary) {
@@ -34,7 +34,9 @@ TerrainState dunes(const std::string& boundary) {
       "{seed: 9, grid: {width: 40, height: 56, cell_size: 0.75, origin_x: -12, origin_y: 5, boundary: " +
           boundary +
           "}, wind: {regime: timeline, segments: [{speed: 9, direction_deg: 20, duration: 3}, {speed: 11, "
-          "direction_deg: 70}]}, micro_relief: {response_time: 5, crest_length: 0.7}, terrain: [noise: "
+          "direction_deg: 70}]}, micro_relief: {response_time: 5, crest_length: 0.7}, repose: "
+          "{moisture_depth: 0.5}, "
+          "saltation: {moisture_cutoff: 0.25}, terrain: [noise: "
           "{layer: "
           "sand, low: 0.2, high: 1.5, "
           "scale: 6}, column: {layer: obstacle, x: 2, y: 20, size_x: 2, size_y: 2, height: 1}, column: "
@@ -60,7 +62,7 @@ TEST(MapMicroRelief, WheelsHaveTheSimulationsSurfaceToTheBit) {
   for (const char* boundary : {"open", "periodic"}) {
     const TerrainState state = dunes(boundary);
     const Snapshot& s = *state.snapshot;
-    const MapGround ground(maps_of(state), capacity, false);
+    const MapGround ground(maps_of(state), capacity, deepest, false);
     const auto expected = GridGround::with_micro_relief(s, capacity);
     const MicroRelief micro_relief(s);
     ASSERT_TRUE(ground.micro_relief());
@@ -107,7 +109,7 @@ TEST(MapMicroRelief, MapsWithinTheirThresholdsGiveNearlyTheSameRipples) {
 TEST(MapMicroRelief, BeamsHaveThem) {
   const TerrainState state = dunes("periodic");
   const Snapshot &s = *state.snapshot,
-                 made = MapGround(maps_of(state), capacity, false).micro_relief()->snapshot();
+                 made = MapGround(maps_of(state), capacity, deepest, false).micro_relief()->snapshot();
   const MicroRelief expected(s), micro_relief(made);
   const MicroReliefWindow window{-13, 4, 400, 600, 0.08};
   EXPECT_EQ(0, std::memcmp(micro_relief.elevations(window).data(), expected.elevations(window).data(),
@@ -119,7 +121,7 @@ TEST(MapMicroRelief, BeamsHaveThem) {
 
 TEST(MapMicroRelief, WithoutAllThatItNeedsTheGroundIsBilinear) {
   const TerrainState state = dunes("open");
-  const GridGround bilinear(*state.snapshot, capacity);
+  const GridGround bilinear(*state.snapshot, capacity, deepest);
   std::vector<TerrainMaps> lacking(3, maps_of(state));
   lacking[0].micro_relief_settings = nullptr;
   lacking[1].forget(MapUse::micro_relief, MapUse::ground);
@@ -131,7 +133,7 @@ TEST(MapMicroRelief, WithoutAllThatItNeedsTheGroundIsBilinear) {
   EXPECT_FALSE(lacking[0].complete(MapUse::micro_relief) || lacking[1].complete(MapUse::micro_relief));
   for (const TerrainMaps& maps : lacking) {
     EXPECT_TRUE(maps.complete(MapUse::ground));
-    const MapGround ground(maps, capacity, false);
+    const MapGround ground(maps, capacity, deepest, false);
     EXPECT_FALSE(ground.micro_relief());
     EXPECT_EQ(ground.finest_feature(), bilinear.finest_feature());
     EXPECT_EQ(ground.elevation(3.1, 8.2), bilinear.elevation(3.1, 8.2));
@@ -146,11 +148,12 @@ TEST(MapMicroRelief, ABrokenMessageIsRefusedWithAllThatIsWrong) {
   m.mean_speed = std::nan("");
   m.ripples_passed = -1;
   m.repose_tangent = 0;
+  m.moisture_depth = -2;
   m.wind_above.y = 1e30;
   const std::string why = test::refusal([&] { snapshot_of(m); });
-  for (const char* part :
-       {"parameters.longest: 7 is not in [0.1, 1] m", "parameters.colour: unknown key",
-        "speed: nan is not in [0, 101]", "passed: -1.0", "repose_tangent: 0.0", "wind_above.y"})
+  for (const char* part : {"parameters.longest: 7 is not in [0.1, 1] m", "parameters.colour: unknown key",
+                           "speed: nan is not in [0, 101]", "passed: -1.0", "repose_tangent: 0.0",
+                           "moisture_depth: -2", "wind_above.y"})
     EXPECT_NE(why.find(part), std::string::npos) << part << " in " << why;
   m = *good;
   m.parameters = "{longest: [";
