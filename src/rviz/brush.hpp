@@ -53,8 +53,8 @@ bool is_material(Brush::Material material);
 /// Why there is no such brush, such as one that smooths plants; empty if there is.
 std::string problem_of(const Brush& brush);
 
-/// For all materials but plants. With a mask a capsule is to be a circle, whose square is stamped. `level` is what `flatten` makes of the layer: the value where the stroke
-/// began [m].
+/// For all materials but plants. With a mask a capsule is to be a circle, whose square is stamped. `level` is
+/// what `flatten` makes of the layer: the value where the stroke began [m].
 EditTerrain::Request terrain_request(const Brush& brush, const render::Capsule& capsule,
                                      const std::string& stroke, double level);
 EditPlants::Request plants_request(const Brush& brush, const render::Capsule& capsule,

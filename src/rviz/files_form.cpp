@@ -29,7 +29,7 @@ QComboBox* name_field(const QString& name, const QString& tip) {
   field->lineEdit()->setPlaceholderText("choose or write a name");
   field->setInsertPolicy(QComboBox::NoInsert);
   field->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
-  field->setMinimumContentsLength(12);
+  field->setMinimumContentsLength(9);
   return field;
 }
 

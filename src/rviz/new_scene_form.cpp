@@ -36,7 +36,10 @@ QComboBox* list_field(const QString& name, const QStringList& choices, const QSt
 
 QHBoxLayout* side_by_side(std::initializer_list<QWidget*> widgets) {
   auto* const row = new QHBoxLayout;
-  for (QWidget* const widget : widgets) row->addWidget(widget, 1);
+  for (QWidget* const widget : widgets) {
+    widget->setMinimumWidth(60);  // ranges are wide, and would make the panel wide
+    row->addWidget(widget, 1);
+  }
   return row;
 }
 
@@ -82,12 +85,12 @@ QLayout* NewSceneForm::make_grid() {
   model_ = list_field("new_model", models, "What moves the sand (sand.model)");
   auto* const form = new QFormLayout;
   form->addRow("cells", side_by_side({width_, height_}));
-  form->addRow("of", side_by_side({cell_size_, boundary_}));
-  form->addRow("sand, its hills", side_by_side({sand_, relief_}));
-  form->addRow("rock hills", rock_);
-  form->addRow("apart, seed", side_by_side({scale_, seed_}));
-  form->addRow("wind to", side_by_side({direction_, speed_}));
-  form->addRow("model", model_);
+  form->addRow("cell, edges", side_by_side({cell_size_, boundary_}));
+  form->addRow("sand, hills", side_by_side({sand_, relief_}));
+  form->addRow("rock hills", side_by_side({rock_}));
+  form->addRow("spacing, seed", side_by_side({scale_, seed_}));
+  form->addRow("wind to, at", side_by_side({direction_, speed_}));
+  form->addRow("model", side_by_side({model_}));
   return form;
 }
 

@@ -28,6 +28,16 @@ void for_each_trait(const Visit& visit) {
   for_each_parameter(appearance, [&](const ParameterRow& row, const auto&) { visit(row); });
 }
 
+/// The shortest decimal number that is this float: 0.3, not 0.300000012.
+QString shortest_text(float value) {
+  QString text;
+  for (int digits = 6; digits <= 9; ++digits) {
+    text = QString::number(static_cast<double>(value), 'g', digits);
+    if (text.toFloat() == value) break;
+  }
+  return text;
+}
+
 std::string quoted(const std::string& text) {
   YAML::Emitter out;
   out << YAML::DoubleQuoted << text;
@@ -124,7 +134,7 @@ void PlantsForm::show(const GetScenarioResponse& answer) {
   for (const YAML::Node& species : scenario["species"]) {
     Traits traits;
     for (const auto& [trait, field] : fields_)
-      if (species[trait]) traits[trait] = QString::fromStdString(species[trait].as<std::string>());
+      if (species[trait]) traits[trait] = shortest_text(species[trait].as<float>());
     name_->addItem(QString::fromStdString(species["name"].as<std::string>()));
     species_.push_back(std::move(traits));
   }

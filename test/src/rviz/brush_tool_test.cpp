@@ -89,6 +89,7 @@ TEST_F(RvizTools, AMaskIsStampedByAClick) {
   set_tool(brush, "Radius", 16.0);
   set_tool(brush, "Strength", 2.0);
   mouse(QEvent::MouseMove, {65, 25}, Qt::NoButton);
+  window_->run_frames(2);
   save("mask");
   click({65, 25});
   wait_for(brush);

@@ -31,6 +31,7 @@ TEST_F(Authoring, AnyLiveParameterIsSetWithinItsRangeAndReset) {
   const auto start = scenario()["saltation"]["lift"].as<double>();
   window_->type("physics_saltation.lift", "0.35");
   EXPECT_TRUE(scenario_has([](const YAML::Node& s) { return s["saltation"]["lift"].as<float>() == 0.35f; }));
+  window_->save("panel_physics", 900);
   window_->type("physics_saltation.lift", "-1");
   EXPECT_TRUE(refuses("physics_error", "saltation.lift: -1 is not in [0, 10]"));
   auto* const flux = window_->find<QAbstractButton>("physics_saltation.flux");
@@ -74,6 +75,7 @@ TEST_F(Authoring, PlantsComeAliveAndTheirTraitsChange) {
   EXPECT_TRUE(scenario_has([](const YAML::Node& s) {
     return s["species"][0]["max_radius"].as<float>() == 0.7f && s["species"][0]["hue"].as<float>() == 60;
   }));
+  window_->save("panel_plants", 1200);
   window_->type("trait_stem", "-3");
   window_->click("set_traits");
   EXPECT_TRUE(refuses("plants_error", "species.0.stem: -3 is not in")) << window_->text("plants_error");
@@ -81,6 +83,7 @@ TEST_F(Authoring, PlantsComeAliveAndTheirTraitsChange) {
 
 TEST_F(Authoring, ASceneBeginsFromTheForm) {
   window_->show_tab(scenes);
+  window_->save("panel_scenes", 1000);
   window_->type("new_width", "40");
   window_->type("new_height", "24");
   window_->type("new_rock", "5");
