@@ -11,6 +11,7 @@
 #include "src/rviz/wind_features.hpp"
 
 class QDoubleSpinBox;
+class QPushButton;
 class QSpinBox;
 class QTableWidget;
 

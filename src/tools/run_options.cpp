@@ -57,7 +57,6 @@ Options run_options() {
       .option("export", "FILE",
               "write the terrain at the end for other programs, by the ending of FILE; may be repeated: " +
                   describe_export_formats())
-      .essential()
       .topic("film", "Films, pictures and plots")
       .option("film", "FILE",
               "film the run from above: an .mp4 (needs ffmpeg), a folder of pictures, or one .png of the end")

@@ -232,7 +232,7 @@ TEST_F(Run, HelpFitsAScreenAndHasTheRestByTopic) {
   expect_options(helped, {"--steps", "--set", "--out", "--film", "--resume", "--help output"});
   EXPECT_LE(std::count(helped.out.begin(), helped.out.end(), '\n'), 40);
   expect_options(run({"--help", "run"}), {"--steps", "--threads", "--backend", "--seed", "--quiet"});
-  expect_options(run({"--help", "output"}), {"--out", "--every", "--format", "--probe"});
+  expect_options(run({"--help", "output"}), {"--out", "--every", "--format", "--probe", "--export"});
   expect_options(run({"--help", "film"}), {"--film", "--film-every", "--view", "--plot"});
   expect_options(run({"--help", "resume"}), {"--checkpoint", "--checkpoint-every", "--resume", "--replay"});
   expect_options(run({"--help", "describe"}), {"--describe", "--describe-view", "--pipeline", "--migrate"});

@@ -10,7 +10,7 @@ from desert_sim.msg import ElevationGrid, Forecast, ForecastTerrainGoal, Simulat
 from desert_sim.msg import WindScheduleSegment
 from desert_sim.srv import SetWindSchedule, SetWindScheduleRequest, Step
 from desert_sim.testing import wait_until
-from dynamic_reconfigure.msg import BoolParameter, Config, DoubleParameter, StrParameter
+from dynamic_reconfigure.msg import BoolParameter, Config, DoubleParameter, IntParameter, StrParameter
 from dynamic_reconfigure.srv import Reconfigure
 from forecast_client import LIMIT, ForecastClient
 from nav_msgs.msg import OccupancyGrid
@@ -145,7 +145,8 @@ class Forecasts(Scenarios):
                 (dict(parameters=Config(doubles=[DoubleParameter("rain__rate", -1)])), ["rain.rate", "-1"]),
                 (dict(parameters=Config(doubles=[DoubleParameter("lava__rate", 1)])), ["lava.rate", "unknown"]),
                 (dict(parameters=Config(doubles=[DoubleParameter("wind_rate", 1)])), ["wind_rate", "no parameter of the desert"]),
-                (dict(parameters=Config(bools=[BoolParameter("vegetation__enabled", False)])), ["vegetation.enabled", "cannot change"]),
+                (dict(parameters=Config(bools=[BoolParameter("vegetation__enabled", False)])), ["vegetation.enabled", "end the plants"]),
+                (dict(parameters=Config(ints=[IntParameter("vegetation__max_plants", 9)])), ["vegetation.max_plants", "cannot change"]),
                 (dict(parameters=Config(strs=[StrParameter("water__sea", "lava")])), ["water.sea", "lava"])):
             message = self.ask(node, GoalStatus.REJECTED, client, **dict({"horizon": 1, "moments": 1}, **fields)).message
             for text in texts:
