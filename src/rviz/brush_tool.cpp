@@ -7,8 +7,6 @@
 #include <rviz/properties/float_property.h>
 #include <rviz/properties/string_property.h>
 #include <rviz/tool_manager.h>
-#include <rviz/view_controller.h>
-#include <rviz/view_manager.h>
 #include <rviz/viewport_mouse_event.h>
 #include <yaml-cpp/yaml.h>
 
@@ -143,18 +141,12 @@ Brush BrushTool::brush(bool shift) const {
 int BrushTool::processMouseEvent(rviz::ViewportMouseEvent& event) {
   viewport_ = event.viewport;
   shift_ = event.shift();
-  const bool camera =
-      !painting_ && (event.alt() || event.middle() || event.right() || event.middleUp() || event.rightUp());
-  if (camera) {
-    if (rviz::ViewController* const view = context_->getViewManager()->getCurrent())
-      view->handleMouseEvent(event);
-  } else if (event.wheel_delta != 0) {
+  const bool camera = !painting_ && TerrainPicker::turns_view(event);
+  if (camera)
+    terrain_->give_to_view(event);
+  else if (event.wheel_delta != 0)
     turn_wheel(event);
-  }
-  if (event.type == QEvent::Leave || !terrain_->update())
-    hovered_.reset();
-  else
-    hovered_ = terrain_->pick(event);
+  hovered_ = terrain_->hover(event);
   if (event.leftDown() && !camera) press(event.shift());
   if (painting_) {
     if (hovered_)

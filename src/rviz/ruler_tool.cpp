@@ -3,8 +3,6 @@
 #include <rviz/display_context.h>
 #include <rviz/properties/string_property.h>
 #include <rviz/tool_manager.h>
-#include <rviz/view_controller.h>
-#include <rviz/view_manager.h>
 #include <rviz/viewport_mouse_event.h>
 
 #include <cmath>
@@ -86,10 +84,7 @@ int RulerTool::processMouseEvent(rviz::ViewportMouseEvent& event) {
   viewport_ = event.viewport;
   const bool ruler = !event.alt() && (event.left() || event.leftUp());
   const bool hover = event.type == QEvent::MouseMove && event.buttons_down == Qt::NoButton;
-  if (!ruler && !hover) {
-    if (rviz::ViewController* const view = context_->getViewManager()->getCurrent())
-      view->handleMouseEvent(event);
-  }
+  if (!ruler && !hover) terrain_->give_to_view(event);
   hovered_.reset();
   pointing_ = event.type != QEvent::Leave && terrain_->update();
   if (pointing_) hovered_ = terrain_->pick(event);

@@ -3,6 +3,8 @@
 #include <OgreCamera.h>
 #include <OgreViewport.h>
 #include <rviz/display_context.h>
+#include <rviz/view_controller.h>
+#include <rviz/view_manager.h>
 #include <rviz/viewport_mouse_event.h>
 
 #include <map>
@@ -73,6 +75,20 @@ bool TerrainPicker::update() {
   }
   problem_.clear();
   return true;
+}
+
+std::optional<render::Point> TerrainPicker::hover(const rviz::ViewportMouseEvent& event) {
+  if (event.type == QEvent::Leave || !update()) return std::nullopt;
+  return pick(event);
+}
+
+bool TerrainPicker::turns_view(rviz::ViewportMouseEvent& event) {
+  return event.alt() || event.middle() || event.right() || event.middleUp() || event.rightUp();
+}
+
+void TerrainPicker::give_to_view(rviz::ViewportMouseEvent& event) const {
+  if (rviz::ViewController* const view = context_.getViewManager()->getCurrent())
+    view->handleMouseEvent(event);
 }
 
 std::optional<render::Point> TerrainPicker::pick(const rviz::ViewportMouseEvent& event) const {

@@ -32,6 +32,13 @@ class TerrainPicker {
   /// Why update() was false.
   const std::string& problem() const { return problem_; }
 
+  /// update(), and what the mouse points at; empty also where the mouse has left the view.
+  std::optional<render::Point> hover(const rviz::ViewportMouseEvent& event);
+  /// Whether the event is one that turns the view, if no tool needs it: alt, the middle or the right button.
+  static bool turns_view(rviz::ViewportMouseEvent& event);
+  /// Lets the present view handle the event.
+  void give_to_view(rviz::ViewportMouseEvent& event) const;
+
   // ---- After update() was true. Places and points are relative to the south-west corner of the grid, with
   //      true heights.
 

@@ -3,8 +3,6 @@
 #include <rviz/display_context.h>
 #include <rviz/properties/string_property.h>
 #include <rviz/tool_manager.h>
-#include <rviz/view_controller.h>
-#include <rviz/view_manager.h>
 #include <rviz/viewport_mouse_event.h>
 
 #include <algorithm>
@@ -107,18 +105,12 @@ const WindFeatureItem* WindTool::pointed_at() const {
 int WindTool::processMouseEvent(rviz::ViewportMouseEvent& event) {
   viewport_ = event.viewport;
   modified_ = event.shift() || event.control();
-  const bool camera = action_ == Action::none &&
-                      (event.alt() || event.middle() || event.right() || event.middleUp() || event.rightUp());
-  if (camera) {
-    if (rviz::ViewController* const view = context_->getViewManager()->getCurrent())
-      view->handleMouseEvent(event);
-  } else if (event.wheel_delta != 0) {
+  const bool camera = action_ == Action::none && TerrainPicker::turns_view(event);
+  if (camera)
+    terrain_->give_to_view(event);
+  else if (event.wheel_delta != 0)
     turn_wheel(event);
-  }
-  if (event.type == QEvent::Leave || !terrain_->update())
-    hovered_.reset();
-  else
-    hovered_ = terrain_->pick(event);
+  hovered_ = terrain_->hover(event);
   if (event.leftDown() && !camera) press(event);
   drag(event);
   if (event.leftUp()) release();
