@@ -74,7 +74,11 @@ QLayout* NewSceneForm::make_grid() {
   boundary_ = list_field("new_boundary", {"periodic", "open"},
                          "periodic: what leaves on one side enters on the other; open: sand leaves");
   sand_ = number_field("new_sand", 0, 1e4, 3, 2, " m", "Mean depth of sand");
-  relief_ = number_field("new_relief", 0, 1e4, 1, 2, " m", "Height of hills of sand; 0: a plain");
+  relief_ = number_field("new_relief", 0, 1e4, 1, 2, " m",
+                         "Height of hills of sand, at most twice its depth; 0: a plain");
+  connect(sand_, qOverload<double>(&QDoubleSpinBox::valueChanged), relief_,
+          [this](double depth) { relief_->setMaximum(2 * depth); });
+  relief_->setMaximum(2 * sand_->value());
   rock_ = number_field("new_rock", 0, 1e4, 0, 2, " m", "Height of hills of bedrock below; 0: a plain");
   scale_ = number_field("new_scale", 0.01, 1e6, 30, 1, " m", "How far apart hills are");
   seed_ = whole_field("new_seed", 0, 2147483647, 1, "Seed of the hills and of all dice");
@@ -103,7 +107,7 @@ std::string NewSceneForm::yaml() const {
       << YAML::Value << boundary_->currentText().toStdString() << YAML::EndMap;
   out << YAML::Key << "terrain" << YAML::Value << YAML::BeginSeq;
   emit_ground(out, "bedrock", 0, rock_->value(), scale_->value());
-  const double half = 0.5 * std::min(relief_->value(), 2 * sand_->value());
+  const double half = 0.5 * relief_->value();
   emit_ground(out, "sand", sand_->value() - half, sand_->value() + half, scale_->value());
   out << YAML::EndSeq << YAML::Key << "wind" << YAML::Value << YAML::Flow << YAML::BeginMap << YAML::Key
       << "speed" << YAML::Value << speed_->value() << YAML::Key << "direction_deg" << YAML::Value

@@ -11,6 +11,7 @@
 #include <QLineEdit>
 #include <QVBoxLayout>
 
+#include "src/core/shortest_decimal.hpp"
 #include "src/rviz/fields.hpp"
 #include "src/rviz/scene_lists.hpp"
 #include "src/scenario/species.hpp"
@@ -26,16 +27,6 @@ void for_each_trait(const Visit& visit) {
   SpeciesAppearance appearance;
   for_each_parameter(traits, [&](const ParameterRow& row, const auto&) { visit(row); });
   for_each_parameter(appearance, [&](const ParameterRow& row, const auto&) { visit(row); });
-}
-
-/// The shortest decimal number that is this float: 0.3, not 0.300000012.
-QString shortest_text(float value) {
-  QString text;
-  for (int digits = 6; digits <= 9; ++digits) {
-    text = QString::number(static_cast<double>(value), 'g', digits);
-    if (text.toFloat() == value) break;
-  }
-  return text;
 }
 
 std::string quoted(const std::string& text) {
@@ -134,7 +125,8 @@ void PlantsForm::show(const GetScenarioResponse& answer) {
   for (const YAML::Node& species : scenario["species"]) {
     Traits traits;
     for (const auto& [trait, field] : fields_)
-      if (species[trait]) traits[trait] = shortest_text(species[trait].as<float>());
+      if (species[trait])
+        traits[trait] = QString::number(shortest_decimal(species[trait].as<float>()), 'g', 9);
     name_->addItem(QString::fromStdString(species["name"].as<std::string>()));
     species_.push_back(std::move(traits));
   }

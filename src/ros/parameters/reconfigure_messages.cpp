@@ -1,10 +1,9 @@
 #include "src/ros/parameters/reconfigure_messages.hpp"
 
-#include <cstdio>
-#include <cstdlib>
 #include <map>
 #include <sstream>
 
+#include "src/core/shortest_decimal.hpp"
 #include "src/ros/parameters/node_parameters.hpp"
 #include "src/scenario/live_parameters.hpp"
 #include "src/scenario/yaml_parameters.hpp"
@@ -25,16 +24,8 @@ constexpr const char* type_name() {
   return std::is_floating_point_v<T> ? "double" : "str";
 }
 
-/// The shortest decimal number that is this float: 0.3, not 0.300000012.
-double shortest_decimal(double value) { return value; }
-double shortest_decimal(float value) {
-  char text[32];
-  for (int digits = 6; digits <= 9; ++digits) {
-    std::snprintf(text, sizeof text, "%.*g", digits, static_cast<double>(value));
-    if (std::strtof(text, nullptr) == value) break;
-  }
-  return std::strtod(text, nullptr);
-}
+double as_written(double value) { return value; }
+double as_written(float value) { return shortest_decimal(value); }
 
 template <class T>
 std::string as_text(const ParameterRow& row, const T& value) {
@@ -45,7 +36,7 @@ std::string as_text(const ParameterRow& row, const T& value) {
     if (value) text << *value;
   } else if constexpr (std::is_same_v<T, ShortList>) {
     text << "[";
-    for (int n = 0; n < value.count; ++n) text << (n ? ", " : "") << shortest_decimal(value.values[n]);
+    for (int n = 0; n < value.count; ++n) text << (n ? ", " : "") << as_written(value.values[n]);
     text << "]";
   } else {
     text << value;
@@ -68,7 +59,7 @@ void add_value(Config& config, const std::string& name, const ParameterRow& row,
   else if constexpr (std::is_same_v<T, int>)
     add_entry(config.ints, name, value);
   else if constexpr (std::is_floating_point_v<T>)
-    add_entry(config.doubles, name, shortest_decimal(value));
+    add_entry(config.doubles, name, as_written(value));
   else
     add_entry(config.strs, name, as_text(row, value));
 }

@@ -87,6 +87,9 @@ TEST_F(Authoring, ASceneBeginsFromTheForm) {
   window_->type("new_width", "40");
   window_->type("new_height", "24");
   window_->type("new_rock", "5");
+  window_->type("new_sand", "0.4");
+  EXPECT_EQ(window_->find<QDoubleSpinBox>("new_relief")->value(), 0.8)
+      << "hills are no higher than sand allows";
   window_->type("new_speed", "9");
   list("new_boundary")->setCurrentText("open");
   list("new_model")->setCurrentText("werner");
