@@ -76,6 +76,31 @@ inline LiftOff make_lift_off(const TerrainView& t, const StepInputs& in, const F
           work.splash.data()};
 }
 
+inline Loose make_loose(const TerrainView& t, const StepInputs& in) {
+  return {t.quanta(Layer::sand),
+          t.real(Layer::vegetation),
+          t.quanta(Layer::water),
+          t.quantum,
+          repose::RelativeMoisture(t, in.repose),
+          saltation::Dryness(in.saltation.moisture_cutoff)};
+}
+
+template <class E>
+void trace(E& exec, const TerrainView& t, const StepInputs& in, const Dice& dice, Workspace& work,
+           const GrainPaths& paths) {
+  const Wind wind(in.particle, in.above);
+  if (!(wind.shear_velocity > 0.0f)) {
+    for_each_item(exec, paths.number, NoPath{paths.counts});
+    return;
+  }
+  const Downwind order(t.grid, in.above);
+  find_shelter(exec, t, in, order, work);
+  const Flights flights = make_flights(t, in, order, wind, {}, work);
+  for_each_item(
+      exec, paths.number,
+      TraceGrain{make_lift_off(t, in, flights, make_loose(t, in), wind, dice, work), paths, t.quantum});
+}
+
 template <class E>
 void step(E& exec, const TerrainView& t, const StepInputs& in, const Dice& dice, LedgerView ledger,
           Workspace& work) {
@@ -86,12 +111,7 @@ void step(E& exec, const TerrainView& t, const StepInputs& in, const Dice& dice,
     const Downwind order(t.grid, in.above);
     find_shelter(exec, t, in, order, work);
     const Flights flights = make_flights(t, in, order, wind, ledger, work);
-    const Loose loose{t.quanta(Layer::sand),
-                      t.real(Layer::vegetation),
-                      t.quanta(Layer::water),
-                      t.quantum,
-                      repose::RelativeMoisture(t, in.repose),
-                      saltation::Dryness(in.saltation.moisture_cutoff)};
+    const Loose loose = make_loose(t, in);
     for_each_item(exec, t.grid.cells(), make_lift_off(t, in, flights, loose, wind, dice, work));
     if (in.particle.splash_number > 0.0f)
       for_each_item(
@@ -107,6 +127,8 @@ void step(E& exec, const TerrainView& t, const StepInputs& in, const Dice& dice,
 }
 
 template void blow(Backend&, const TerrainView&, wind::Vector);
+template void trace(Backend&, const TerrainView&, const StepInputs&, const Dice&, Workspace&,
+                    const GrainPaths&);
 template void step(Backend&, const TerrainView&, const StepInputs&, const Dice&, LedgerView, Workspace&);
 
 }  // namespace desert_sim::particles

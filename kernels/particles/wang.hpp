@@ -127,6 +127,33 @@ struct StepInputs {
   float* impact_strength;         ///< [m], or null
 };
 
+/// A place in flight: metres east and north of the terrain's south-west corner, and the height.
+struct PathPoint {
+  float x, y, z;
+};
+
+/// Ways of grains, in memory of the device.
+struct GrainPaths {
+  int number;         ///< of paths
+  int most_points;    ///< of each; where a grain flies on, the last one is where it was last seen
+  PathPoint* points;  ///< of path n from n · most_points on
+  int* counts;        ///< of points of each path; 0 where the wind lifts nothing
+
+  /// Where grain n starts: spread evenly over the terrain (R2 sequence).
+  DESERT_HD int cell(int n, const Grid& grid) const {
+    const double east = (n + 0.5) * 0.7548776662466927, north = (n + 0.5) * 0.5698402909980532;
+    const int x = static_cast<int>((east - floor(east)) * grid.width),
+              y = static_cast<int>((north - floor(north)) * grid.height);
+    return grid.index(clamp_index(x, grid.width), clamp_index(y, grid.height));
+  }
+};
+
+/// The ways of some of the grains that step() would lift with these inputs and dice, from lift-off to rest.
+/// Moves nothing.
+template <class E>
+void trace(E& exec, const TerrainView& t, const StepInputs& in, const Dice& dice, Workspace& work,
+           const GrainPaths& paths);
+
 /// Writes wind_x and wind_y.
 template <class E>
 void blow(E& exec, const TerrainView& t, wind::Vector above);

@@ -57,6 +57,12 @@ struct Bed {
   }
 };
 
+/// Nobody looks at the grains of a step.
+struct Unseen {
+  DESERT_HD void flying(const Grain&) const {}
+  DESERT_HD void landed(const Grain&) const {}
+};
+
 /// What all grains of a step share.
 struct Flights {
   Downwind order;
@@ -83,13 +89,17 @@ struct Flights {
   DESERT_HD bool solid(int i) const { return value_or_zero(obstacle, i) > 0.0f; }
 
   /// Flies to the next impact, and says in which cell; −1 beyond an open edge. `rest`: the last cell on the
-  /// way where a grain can rest.
-  DESERT_HD int next_impact(const Bed& bed, float rise, Grain& g, Surface& hit, int& rest) const {
+  /// way where a grain can rest. `seen` is told of the grain in flight, and where it has landed.
+  template <class Seen>
+  DESERT_HD int next_impact(const Bed& bed, float rise, Grain& g, Surface& hit, int& rest,
+                            const Seen& seen) const {
     hit = hop(bed, air, rise, g, [&](float gx, float gy) DESERT_INLINE {
+      seen.flying(g);
       if (!obstacle) return;
       const int cell = bed.cell_at(gx, gy);
       if (cell >= 0 && !solid(cell)) rest = cell;
     });
+    seen.landed(g);
     const int cell = bed.cell_at(g.x, g.y);
     if (cell >= 0 && !solid(cell)) rest = cell;
     return cell;
@@ -161,20 +171,34 @@ struct LiftOff {
     flights.ledger.book_in(Material::sand, i, whole);
     return whole;
   }
+  /// What the wind lifts off a cell, at this u.
+  DESERT_HD Quanta lifted_at(int x, int y, int i, float u) const {
+    const float excess = maximum(u * u - threshold_squared, 0.0f) * exposure_at(flights.bed_at(x, y));
+    return lift.whole_at_most(per_excess * excess * loose.share(i), loose.sand[i], i);
+  }
   DESERT_HD void operator()(int i) const {
     const Grid& grid = flights.order.grid;
     const int y = i / grid.width, x = i - y * grid.width;
     if (flights.solid(i)) return;
     const Column& here = flights.columns[flights.order.slot(x, y)];
     const float u = shear_velocity_at(here);
-    const float excess = maximum(u * u - threshold_squared, 0.0f) * exposure_at(flights.bed_at(x, y));
-    const Quanta lifted = lift.whole_at_most(per_excess * excess * loose.share(i), loose.sand[i], i);
+    const Quanta lifted = lifted_at(x, y, i, u);
     loose.sand[i] -= lifted;
     const Quanta packet = lifted + enter(x, y, i, here.surface);
     if (packet > 0) fly(x, y, i, packet, lifted > 0 ? u : shear_velocity);
   }
   DESERT_HD void fly(int x, int y, int i, Quanta packet, float u) const {
     RandomSequence words{flight.word(i)};
+    const int rest = run(x, y, i, u, words, Unseen{},
+                         [&](int cell, float speed) DESERT_INLINE { strike(cell, packet, speed, words); });
+    if (rest < 0) return flights.leave(i, packet);
+    atomic_add(&flights.landed[rest], packet);
+  }
+  /// From lift-off to rest, and says in which cell; −1 if that is beyond an open edge. `struck(cell, speed)`
+  /// is called for each impact on what is not solid.
+  template <class Seen, class Struck>
+  DESERT_HD int run(int x, int y, int i, float u, RandomSequence& words, const Seen& seen,
+                    const Struck& struck) const {
     const Bed bed = flights.bed_from(x, y, words);
     Grain g{0.0f, 0.0f, bed.at(0.0f, 0.0f).height, 0.0f, 0.0f, 0.0f};
     flights.starts.lift_off(flights.air, u, words, g);
@@ -182,18 +206,67 @@ struct LiftOff {
     int rest = i;
     Surface hit{};
     for (int bounces = 0;; ++bounces) {
-      const int cell = flights.next_impact(bed, rise, g, hit, rest);
-      if (cell < 0) return flights.leave(i, packet);
-      if (!flights.solid(cell)) strike(cell, packet, g.speed(), words);
+      const int cell = flights.next_impact(bed, rise, g, hit, rest, seen);
+      if (cell < 0) return cell;
+      if (!flights.solid(cell)) struck(cell, g.speed());
       rise = bounce(hit, flights.normal_restitution, flights.tangential_restitution, g);
-      if (rise < flights.least_rise || bounces == most_bounces) break;
+      if (rise < flights.least_rise || bounces == most_bounces) return rest;
     }
-    atomic_add(&flights.landed[rest], packet);
   }
   DESERT_HD void strike(int cell, Quanta packet, float speed, RandomSequence& words) const {
     atomic_add(&impacts[cell], packet);
     const float thrown = static_cast<float>(packet) * splash_number * speed;
     atomic_add(&splash[cell], Die::whole_at_most(thrown, load_limit, words.next()));
+  }
+};
+
+struct NoPath {
+  int* counts;
+  DESERT_HD void operator()(int n) const { counts[n] = 0; }
+};
+
+/// The ways of grains that a step would lift off some cells, for somebody who looks; nothing moves.
+struct TraceGrain {
+  LiftOff lift_off;
+  GrainPaths paths;
+  float metres_per_quantum;
+
+  /// Notes where a grain is: from where it started, in a path with room for some points.
+  struct Note {
+    PathPoint* points;
+    int* count;
+    int most;
+    PathPoint start;  ///< of the ground there
+
+    DESERT_HD void put(const Grain& g) const {
+      points[*count - 1] = {start.x + g.x, start.y + g.y, start.z + g.z};
+    }
+    DESERT_HD void flying(const Grain& g) const {
+      if (*count < most) ++*count;
+      put(g);
+    }
+    DESERT_HD void landed(const Grain& g) const { put(g); }
+  };
+
+  DESERT_HD void operator()(int n) const {
+    const Flights& flights = lift_off.flights;
+    const Grid& grid = flights.order.grid;
+    int& count = paths.counts[n];
+    count = 0;
+    const int i = paths.cell(n, grid), y = i / grid.width, x = i - y * grid.width;
+    if (flights.solid(i)) return;
+    const float u = lift_off.shear_velocity_at(flights.columns[flights.order.slot(x, y)]);
+    if (lift_off.lifted_at(x, y, i, u) == 0) return;
+    RandomSequence words{lift_off.flight.word(i)};
+    RandomSequence place = words;  // the grain draws its place from the same dice
+    const Bed bed = flights.bed_from(x, y, place);
+    const PathPoint start{(static_cast<float>(x) + 0.5f + bed.off_x) * grid.cell_size,
+                          (static_cast<float>(y) + 0.5f + bed.off_y) * grid.cell_size,
+                          static_cast<float>(bed.reference) * metres_per_quantum};
+    PathPoint* const points = paths.points + static_cast<std::size_t>(n) * paths.most_points;
+    points[0] = {start.x, start.y, start.z + bed.at(0.0f, 0.0f).height};
+    count = 1;
+    lift_off.run(x, y, i, u, words, Note{points, &count, paths.most_points, start}, [](int, float) {});
   }
 };
 
@@ -223,7 +296,7 @@ struct Splash {
     flights.starts.splash(flights.air, impact_speed, words, g);
     int rest = i;
     Surface hit{};
-    if (g.velocity_z > 0.0f && flights.next_impact(bed, g.velocity_z, g, hit, rest) < 0)
+    if (g.velocity_z > 0.0f && flights.next_impact(bed, g.velocity_z, g, hit, rest, Unseen{}) < 0)
       return flights.leave(i, packet);
     atomic_add(&flights.landed[rest], packet);
   }

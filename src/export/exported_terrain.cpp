@@ -12,8 +12,9 @@ namespace desert_sim {
 
 namespace {
 
-render::TerrainLook look_of_export() {
+render::TerrainLook look_of_export(const render::Palette& palette = {}) {
   render::TerrainLook look;
+  look.palette = palette;
   look.light = false;
   return look;
 }
@@ -43,7 +44,8 @@ TerrainMeshes meshes_of(const std::string& file, const ExportedTerrain& terrain)
   const render::TerrainGrid grid{render::BlockLayout::whole(s.width, s.height), s.cell_size,
                                  std::numeric_limits<float>::quiet_NaN(), 0};
   require_surface(file, s.width, s.height);
-  render::TerrainBlock block = render::build_terrain_block(grid, 0, 0, layer_windows(s), look_of_export());
+  render::TerrainBlock block =
+      render::build_terrain_block(grid, 0, 0, layer_windows(s), look_of_export(s.palette));
   TerrainMeshes meshes{std::move(block.ground), std::move(block.water), {}};
   if (terrain.plants) meshes.plants = plants_of(*terrain.plants, 1, false);
   return meshes;
@@ -72,7 +74,8 @@ std::vector<render::PackedColour> surface_colours(const Snapshot& s, const rende
   for (std::size_t i = 0; i < colours.size(); ++i) {
     const float d = (*depth)[i];
     if (d > render::least_water_depth)
-      colours[i] = render::pack(mix(unpacked(colours[i]), render::water_colour(d), render::water_opacity(d)));
+      colours[i] = render::pack(
+          mix(unpacked(colours[i]), render::water_colour(d, s.palette), render::water_opacity(d)));
   }
   return colours;
 }

@@ -25,11 +25,11 @@ std::string colour_line(const char* key, const render::Colour& c) {
   return line_of(key, " %.4f %.4f %.4f", c.r, c.g, c.b);
 }
 
-std::string materials(const std::string& picture) {
+std::string materials(const std::string& picture, const render::Palette& palette) {
   constexpr render::Colour white{1, 1, 1};
   return "newmtl ground\n" + colour_line("Kd", white) + "map_Kd " + picture + "\n\nnewmtl water\n" +
-         colour_line("Kd", render::water_colour(1)) + "d 0.7\n\nnewmtl plants\n" +
-         colour_line("Kd", render::SurfaceMaterials().plants);
+         colour_line("Kd", render::water_colour(1, palette)) + "d 0.7\n\nnewmtl plants\n" +
+         colour_line("Kd", palette.vegetation);
 }
 
 class ObjFile {
@@ -76,7 +76,7 @@ void write_obj(const std::string& path, const ExportedTerrain& terrain) {
   const std::string picture = name_beside(path, obj_picture), library = name_beside(path, obj_materials);
   const auto name = [](const std::string& file) { return std::filesystem::path(file).filename().string(); };
   write_colours(picture, s.width, s.height, ground_colours(s, meshes.ground));
-  write_file(library, materials(name(picture)));
+  write_file(library, materials(name(picture), s.palette));
   ObjFile file(path, s);
   file.text("# " + frame_note(s) + "\n# x is east, y is north, z is up\nmtllib " + name(library) + "\n");
   file.add("ground", meshes.ground, true);

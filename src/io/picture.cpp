@@ -175,6 +175,7 @@ Colour apply_shading(const Colour& colour, float shade) {
 struct Materials {
   cv::Mat sand, vegetation, plants, obstacle, water, soil, wind_shadow;  // empty if not in use
   const std::vector<std::array<float, 3>>& crown_colours;
+  const render::Palette& palette;
 
   /// Colour of the ground lit with `shade`, and of the water on it.
   Colour colour(int row, int column, float shade) const {
@@ -186,13 +187,13 @@ struct Materials {
     const auto species = static_cast<std::size_t>(value_at(plants, row, column));
     if (species > 0 && species <= crown_colours.size()) {
       const auto& [r, g, b] = crown_colours[species - 1];
-      m.plants = {r, g, b};
+      m.plants = render::Colour{r, g, b};
     }
-    Colour ground = to_bgr(ground_colour(m));
+    Colour ground = to_bgr(ground_colour(m, palette));
     ground = apply_shading(ground,
                            shade * (1 - 0.12F * std::clamp(value_at(wind_shadow, row, column), 0.0F, 1.0F)));
     const float depth = std::max(value_at(water, row, column), 0.0F);
-    const Colour water_colour = to_bgr(render::water_colour(depth)) * (0.75F + 0.25F * shade);
+    const Colour water_colour = to_bgr(render::water_colour(depth, palette)) * (0.75F + 0.25F * shade);
     return mix(ground, water_colour, render::water_opacity(depth));
   }
 };
@@ -292,11 +293,15 @@ cv::Mat hillshade_picture(const PictureInput& input) {
   const auto pixel_size = static_cast<float>(input.cell_size * width / elevation.cols);
   const double exaggeration = exaggeration_of(elevation, pixel_size);
   const cv::Mat shade = shading(elevation, pixel_size, exaggeration);
-  const Materials materials{
-      layer_image(input.sand, width, height),        layer_image(input.vegetation, width, height),
-      class_image(input.plants, width, height),      layer_image(input.obstacle, width, height),
-      layer_image(input.water, width, height),       layer_image(input.soil, width, height),
-      layer_image(input.wind_shadow, width, height), input.crown_colours};
+  const Materials materials{layer_image(input.sand, width, height),
+                            layer_image(input.vegetation, width, height),
+                            class_image(input.plants, width, height),
+                            layer_image(input.obstacle, width, height),
+                            layer_image(input.water, width, height),
+                            layer_image(input.soil, width, height),
+                            layer_image(input.wind_shadow, width, height),
+                            input.crown_colours,
+                            input.palette};
   double lowest = 0, highest = 0;
   cv::minMaxLoc(elevation, &lowest, &highest, nullptr, nullptr, elevation == elevation);
   cv::Mat picture(elevation.size(), CV_8UC3);

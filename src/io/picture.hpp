@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "src/render/palette.hpp"
 #include "src/render/rasteriser.hpp"
 
 namespace desert_sim {
@@ -20,6 +21,7 @@ struct PictureInput {
   const float* vegetation = nullptr;                ///< cover [0..1]
   const float* plants = nullptr;                    ///< number of the species, from 1; 0: none
   std::vector<std::array<float, 3>> crown_colours;  ///< of each species: red, green, blue [0..1]
+  render::Palette palette;                          ///< of everything else
   const float* obstacle = nullptr;                  ///< [0/1]
   const float* water = nullptr;                     ///< depth [m]
   const float* soil = nullptr;                      ///< [m]

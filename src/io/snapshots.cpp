@@ -28,6 +28,7 @@ PictureInput to_picture_input(const Snapshot& s) {
   picture.vegetation = values(Layer::vegetation);
   picture.plants = values(Layer::plants);
   picture.crown_colours = s.crown_colours;
+  picture.palette = s.palette;
   picture.obstacle = values(Layer::obstacle);
   picture.water = values(Layer::water);
   picture.soil = values(Layer::soil);

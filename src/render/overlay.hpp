@@ -55,5 +55,7 @@ std::string legend_number(double value);
 /// moment [m].
 constexpr const char* slope_layer = "slope";
 constexpr const char* change_layer = "change";
+/// The layer of the simulation that can shade the ground.
+constexpr const char* illumination_layer = "illumination";
 
 }  // namespace desert_sim::render

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "src/render/palette.hpp"
 #include "src/render/sunlight.hpp"
-#include "src/render/terrain_colours.hpp"
 
 namespace desert_sim::render {
 
@@ -82,8 +82,7 @@ Mesh plants_mesh(const std::vector<Plant>& plants, const std::vector<std::uint8_
     plant.foot *= look.vertical_exaggeration;
     corners.clear();
     add_plant(plant, in_detail, corners);
-    const Colour colour =
-        species[n] < look.colours.size() ? look.colours[species[n]] : SurfaceMaterials().plants;
+    const Colour colour = species[n] < look.colours.size() ? look.colours[species[n]] : Palette().vegetation;
     for (std::size_t corner = 0; corner + 2 < corners.size(); corner += 3)
       add_triangle(&corners[corner], colour, look.light, mesh);
   }

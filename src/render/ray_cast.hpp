@@ -7,11 +7,6 @@
 
 namespace desert_sim::render {
 
-struct Ray {
-  Point origin;     ///< [m]
-  Point direction;  ///< of any length above 0
-};
-
 /// The point nearest to the ray's origin in which the ray meets the surface of HeightField::height_at(),
 /// from above or from below; empty if it meets none. Where the surface is unknown, rays go through. The
 /// time is proportional to the number of cells below the ray.

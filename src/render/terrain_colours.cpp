@@ -6,10 +6,6 @@ namespace desert_sim::render {
 
 namespace {
 
-constexpr Colour sand_colour{0.855f, 0.706f, 0.463f}, soil_colour{0.424f, 0.322f, 0.227f},
-    weak_rock{0.565f, 0.510f, 0.447f}, hard_rock{0.408f, 0.369f, 0.337f},
-    obstacle_colour{0.251f, 0.118f, 0.345f}, shallow_colour{0.373f, 0.647f, 0.804f},
-    deep_colour{0.078f, 0.216f, 0.471f};
 constexpr float hidden = 0.02f, covering = 0.12f;  // depths of sand or soil: none and all of it is seen [m]
 constexpr float wet = 0.05f;                       // moisture of ground that looks fully wet [m]
 constexpr float wet_brightness = 0.62f;
@@ -25,18 +21,18 @@ float smooth_step(float from, float to, float value) {
 
 float cover_of_depth(float depth) { return smooth_step(hidden, covering, known(depth)); }
 
-Colour ground_colour(const SurfaceMaterials& m) {
-  Colour colour = mix(weak_rock, hard_rock, std::clamp(known(m.resistance), 0.0f, 1.0f));
-  colour = mix(colour, soil_colour, std::clamp(known(m.soil), 0.0f, 1.0f));
-  colour = mix(colour, sand_colour, std::clamp(known(m.sand), 0.0f, 1.0f));
+Colour ground_colour(const SurfaceMaterials& m, const Palette& p) {
+  Colour colour = mix(p.weak_rock, p.hard_rock, std::clamp(known(m.resistance), 0.0f, 1.0f));
+  colour = mix(colour, p.soil, std::clamp(known(m.soil), 0.0f, 1.0f));
+  colour = mix(colour, p.sand, std::clamp(known(m.sand), 0.0f, 1.0f));
   const float brightness = 1 + (wet_brightness - 1) * smooth_step(0, wet, known(m.moisture));
   colour = {colour.r * brightness, colour.g * brightness, colour.b * brightness};
-  colour = mix(colour, m.plants, 0.9f * smooth_step(0, 0.8f, known(m.vegetation)));
-  return mix(colour, obstacle_colour, smooth_step(0.25f, 0.75f, known(m.obstacle)));
+  colour = mix(colour, m.plants.value_or(p.vegetation), 0.9f * smooth_step(0, 0.8f, known(m.vegetation)));
+  return mix(colour, p.obstacle, smooth_step(0.25f, 0.75f, known(m.obstacle)));
 }
 
-Colour water_colour(float depth) {
-  return mix(shallow_colour, deep_colour, 1 - std::exp(-std::max(0.0f, known(depth)) / 2));
+Colour water_colour(float depth, const Palette& p) {
+  return mix(p.shallow_water, p.deep_water, 1 - std::exp(-std::max(0.0f, known(depth)) / 2));
 }
 
 float water_opacity(float depth) { return 0.92f * smooth_step(0.001f, 0.2f, known(depth)); }

@@ -26,11 +26,12 @@ std::vector<int> vertex_cells(int first, int last, int stride) {
 class BlockBuilder {
  public:
   BlockBuilder(const BlockLayout& layout, int block, int level, double cell_size, const CellWindow& surface,
-               const CellColour& colour, float base)
+               const CellColour& colour, float base, const CellRectangle& hole)
       : surface_(surface),
         colour_(colour),
         cell_size_(static_cast<float>(cell_size)),
         base_(base),
+        hole_(hole),
         stride_(1 << level),
         cells_(layout.vertices(block)),
         columns_(vertex_cells(cells_.x, cells_.right() - 1, stride_)),
@@ -88,6 +89,11 @@ class BlockBuilder {
     for (const std::uint32_t corner : {a, b, c}) mesh_.indices.push_back(corner);
   }
 
+  /// Whether all between these columns and rows lies in the hole.
+  bool in_hole(int west, int east, int south, int north) const {
+    return hole_.contains(west, south) && hole_.contains(east, north);
+  }
+
   /// How different two vertices look.
   int contrast(std::uint32_t a, std::uint32_t b) const {
     int sum = 0;
@@ -104,6 +110,7 @@ class BlockBuilder {
     mesh_.indices.reserve(6 * columns_.size() * rows_.size());
     for (std::size_t row = 0; row + 1 < rows_.size(); ++row)
       for (std::size_t column = 0; column + 1 < columns_.size(); ++column) {
+        if (in_hole(columns_[column], columns_[column + 1], rows_[row], rows_[row + 1])) continue;
         const std::uint32_t ring[4] = {number(column, row), number(column + 1, row),
                                        number(column + 1, row + 1), number(column, row + 1)};
         std::uint32_t known[4];
@@ -145,20 +152,26 @@ class BlockBuilder {
   template <class At, class Ends>
   void add_strip(std::size_t count, const At& at, const Ends& ends) {
     std::uint32_t top_before = no_vertex;
+    int x_before = -1, y_before = -1;
     for (std::size_t n = 0; n < count; ++n) {
       const auto [column, row] = at(n);
+      const int x = columns_[column], y = rows_[row];
       std::uint32_t top = no_vertex;
       if (number(column, row) != no_vertex) {
         top = static_cast<std::uint32_t>(mesh_.vertices.size());
-        const auto [upper, lower] = ends(mesh_.vertices[number(column, row)], columns_[column], rows_[row]);
+        const auto [upper, lower] = ends(mesh_.vertices[number(column, row)], x, y);
         mesh_.vertices.push_back(upper);
         mesh_.vertices.push_back(lower);
-        if (top_before != no_vertex) {
+        const bool cut_out = in_hole(std::min(x, x_before), std::max(x, x_before), std::min(y, y_before),
+                                     std::max(y, y_before));
+        if (top_before != no_vertex && !cut_out) {
           add_triangle(top_before + 1, top + 1, top);
           add_triangle(top_before + 1, top, top_before);
         }
       }
       top_before = top;
+      x_before = x;
+      y_before = y;
     }
   }
 
@@ -180,6 +193,7 @@ class BlockBuilder {
   const CellWindow& surface_;
   const CellColour& colour_;
   const float cell_size_, base_;
+  const CellRectangle hole_;
   const int stride_;
   const CellRectangle cells_;
   const std::vector<int> columns_, rows_;
@@ -190,8 +204,9 @@ class BlockBuilder {
 }  // namespace
 
 Mesh build_block(const BlockLayout& layout, int block, int level, double cell_size, const CellWindow& surface,
-                 const CellColour& colour, float base) {
-  return BlockBuilder(layout, block, level, cell_size, surface, colour, base).build(layout.neighbours(block));
+                 const CellColour& colour, float base, const CellRectangle& hole) {
+  return BlockBuilder(layout, block, level, cell_size, surface, colour, base, hole)
+      .build(layout.neighbours(block));
 }
 
 CellWindow water_surface(const CellWindow& ground, const CellWindow& depth, int level) {

@@ -23,9 +23,11 @@ using CellColour = std::function<PackedColour(int x, int y, float normal_x, floa
 /// `surface` has the heights [m] of layout.needed_cells(block, level) at least. Unknown cells (NaN) are
 /// holes: there is no triangle at them. Normals follow from central differences over 2^level cells on either
 /// side, across the edges of blocks, and one-sided beside unknown cells and at the edge of the grid. The
-/// walls end at the height `base` [m]; NaN: there are none.
+/// walls end at the height `base` [m]; NaN: there are none. Nothing is drawn between the centres of the
+/// outermost cells of `hole`.
 Mesh build_block(const BlockLayout& layout, int block, int level, double cell_size, const CellWindow& surface,
-                 const CellColour& colour, float base = std::numeric_limits<float>::quiet_NaN());
+                 const CellColour& colour, float base = std::numeric_limits<float>::quiet_NaN(),
+                 const CellRectangle& hole = {});
 
 /// The surface of water of this depth [m] above the ground, in the cells of `depth`, for build_block():
 /// unknown where it is dry, except beside water, where it continues level into the ground, so that the

@@ -13,6 +13,11 @@ constexpr double pi = 3.14159265358979323846;
 using Point = Eigen::Vector3d;
 using Box = Eigen::AlignedBox3d;
 
+/// What begins at a point [m] and goes on in a direction, of any length above 0.
+struct Ray {
+  Point origin, direction;
+};
+
 class View {
  public:
   /// `projection` maps coordinates of the camera (which looks along -z) to OpenGL's clip coordinates, and
@@ -21,6 +26,8 @@ class View {
   View(const Eigen::Matrix4d& projection, const Eigen::Matrix4d& camera_from_terrain, int height);
 
   bool orthographic() const { return orthographic_; }
+  /// The line of sight through the middle of the picture, from the camera on.
+  Ray middle() const { return {eye_, ahead_}; }
   /// Whether any part of the box can be in the picture. May be true for a box just outside.
   bool sees(const Box& box) const;
   /// The camera's distance from a box; 0 inside [m]. For an orthographic camera: from the line of sight

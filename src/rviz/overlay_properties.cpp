@@ -27,10 +27,8 @@ std::vector<float> some_values(const LayerMap& map) {
 
 }  // namespace
 
-OverlayProperties::OverlayProperties(rviz::Property* parent) {
-  layer_ =
-      new rviz::EditableEnumProperty("Overlay", none, "The layer that is shown as colours on the ground.",
-                                     parent, SLOT(choose_layer()), this);
+OverlayProperties::OverlayProperties(const QString& name, const QString& what, rviz::Property* parent) {
+  layer_ = new rviz::EditableEnumProperty(name, none, what, parent, SLOT(choose_layer()), this);
   layer_->addOption(none);
   for (const render::LayerStyle& style : render::layer_styles())
     layer_->addOption(QString::fromStdString(style.layer));
@@ -78,6 +76,10 @@ render::Overlay OverlayProperties::overlay() const {
   return overlay;
 }
 
+rviz::Property* OverlayProperties::property() const { return layer_; }
+
+bool OverlayProperties::shows_change() const { return layer_->getStdString() == render::change_layer; }
+
 bool OverlayProperties::legend() const { return legend_->getBool(); }
 
 std::string OverlayProperties::title() const {
@@ -113,7 +115,7 @@ void OverlayProperties::clear() {
 void OverlayProperties::compare_again() {
   if (history_.reference() == shown_reference_) return;
   shown_reference_ = history_.reference();
-  if (layer_->getStdString() == render::change_layer) Q_EMIT changed();
+  if (shows_change()) Q_EMIT changed();
 }
 
 void OverlayProperties::set_range(float low, float high) {

@@ -22,8 +22,9 @@ class OverlayProperties : public QObject {
   Q_OBJECT
 
  public:
-  /// Below `parent`, which owns the properties.
-  explicit OverlayProperties(rviz::Property* parent);
+  /// Below `parent`, which owns the properties; `name` is that of the property that has all others.
+  OverlayProperties(const QString& name, const QString& what, rviz::Property* parent);
+  rviz::Property* property() const;
 
   /// The overlay as it is to be drawn; not active if none is chosen.
   render::Overlay overlay() const;
@@ -37,6 +38,7 @@ class OverlayProperties : public QObject {
   void see_elevation(const std::shared_ptr<const LayerMap>& map);
   /// Forgets the maps that changes are compared with.
   void clear();
+  bool shows_change() const;
   /// The map of the elevation that the change is compared with; null without any.
   std::shared_ptr<const LayerMap> reference() const { return shown_reference_; }
 

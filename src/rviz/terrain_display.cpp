@@ -4,9 +4,6 @@
 #include <OgreViewport.h>
 #include <rviz/display_context.h>
 #include <rviz/display_group.h>
-#include <rviz/properties/bool_property.h>
-#include <rviz/properties/float_property.h>
-#include <rviz/properties/int_property.h>
 #include <rviz/properties/ros_topic_property.h>
 #include <rviz/render_panel.h>
 #include <rviz/view_manager.h>
@@ -25,6 +22,13 @@ using rviz::StatusProperty;
 
 namespace {
 
+void show_legend(Legend& legend, const OverlayProperties& properties, const render::Overlay& overlay) {
+  if (overlay.active() && properties.legend())
+    legend.show(properties.title(), overlay);
+  else
+    legend.hide();
+}
+
 /// The mean of known cells here and there, which a hill in the middle hardly raises; 0 if there are none.
 float usual_height(const LayerMap& elevation) {
   constexpr std::uint32_t count = 8;
@@ -41,59 +45,11 @@ float usual_height(const LayerMap& elevation) {
 
 }  // namespace
 
-TerrainDisplay::TerrainDisplay() {
-  topic_ = new rviz::RosTopicProperty(
-      "Elevation Topic", "desert_sim/elevation",
-      QString::fromStdString(ros::message_traits::datatype<ElevationGrid>()),
-      "Keyframes of the terrain. Updates, layers, plants and wind are taken from the same node.", this,
-      SLOT(subscribe()));
-  exaggeration_ = new rviz::FloatProperty("Vertical Exaggeration", 1,
-                                          "Factor by which heights are multiplied when they are drawn.", this,
-                                          SLOT(update_look()));
-  exaggeration_->setMin(0.01F);
-  exaggeration_->setMax(100);
-  materials_ =
-      new rviz::BoolProperty("Materials", true, "Colour rock, soil, sand, wet ground and plants as such.",
-                             this, SLOT(update_look()));
-  water_ =
-      new rviz::BoolProperty("Water", true, "Show water, if the terrain has it.", this, SLOT(update_look()));
-  shadows_ =
-      new rviz::BoolProperty("Shadows", true, "Let dunes and hills cast shadows.", this, SLOT(update_look()));
-  ripples_ =
-      new rviz::BoolProperty("Ripples", true, "Show wind ripples of ~micro_relief on sand near the camera.",
-                             this, SLOT(subscribe_views()));
-  sky_shown_ = new rviz::BoolProperty(
-      "Sky", true, "Show sky and sun behind the terrain, in views with a perspective.", this);
-  overlay_ = std::make_unique<OverlayProperties>(this);
-  connect(overlay_.get(), SIGNAL(changed()), this, SLOT(update_look()));
-  contours_ = new rviz::FloatProperty(
-      "Contour Interval", 0, "Contour lines are so many metres apart; 0: none.", this, SLOT(update_look()));
-  contours_->setMin(0);
-  plants_ =
-      new rviz::BoolProperty("Plants", true, "Show the plants of ~plants.", this, SLOT(subscribe_views()));
-  most_plants_ = new rviz::IntProperty("Most Plants", 10000, "The widest so many are shown.", plants_);
-  most_plants_->setMin(1);
-  wind_ = new rviz::BoolProperty("Wind", false, "Show the wind of ~wind as arrows on the ground.", this,
-                                 SLOT(subscribe_views()));
-  most_arrows_ = new rviz::IntProperty("Most Arrows", 1000, "At most so many arrows.", wind_);
-  most_arrows_->setMin(1);
-  quad_pixels_ = new rviz::FloatProperty(
-      "Quad Size", 4, "A quad of the mesh takes about so many pixels, if the terrain has cells enough.", this,
-      SLOT(update_limits()));
-  quad_pixels_->setMin(1);
-  quad_pixels_->setMax(64);
-  triangles_ = new rviz::IntProperty("Most Triangles", 40000,
-                                     "At most so many triangles of ground are in the picture.", this,
-                                     SLOT(update_limits()));
-  triangles_->setMin(1000);
-  budget_ = new rviz::FloatProperty(
-      "Time per Frame", 20,
-      "At most so many milliseconds of each frame go into building blocks that changed.", this);
-  budget_->setMin(1);
-  budget_->setMax(1000);
-  fit_view_ = new rviz::BoolProperty(
-      "Fit View", false,
-      "Show the whole of each terrain that comes, if the view has a focal point and a distance.", this);
+TerrainDisplay::TerrainDisplay() : properties_(std::make_unique<TerrainProperties>(this)) {
+  connect(properties_.get(), SIGNAL(topic_changed()), this, SLOT(subscribe()));
+  connect(properties_.get(), SIGNAL(look_changed()), this, SLOT(update_look()));
+  connect(properties_.get(), SIGNAL(views_changed()), this, SLOT(subscribe_views()));
+  connect(properties_.get(), SIGNAL(limits_changed()), this, SLOT(update_limits()));
 }
 
 TerrainDisplay::~TerrainDisplay() {
@@ -102,6 +58,7 @@ TerrainDisplay::~TerrainDisplay() {
   plants_view_.reset();
   wind_view_.reset();
   ripples_view_.reset();
+  near_ground_.reset();
   scene_.reset();
   sky_.reset();
 }
@@ -111,10 +68,12 @@ TerrainDisplay::~TerrainDisplay() {
 void TerrainDisplay::onInitialize() {
   scene_ = std::make_unique<TerrainScene>(scene_node_);
   ripples_view_ = std::make_unique<RipplesView>(scene_->ground_material());
+  near_ground_ = std::make_unique<NearGroundView>(*scene_);
   level_node_ = scene_node_->createChildSceneNode();
   plants_view_ = std::make_unique<PlantsView>(level_node_);
   wind_view_ = std::make_unique<WindView>(scene_->node());
   legend_ = std::make_unique<Legend>();
+  second_legend_ = std::make_unique<Legend>();
   sky_ = std::make_unique<Sky>(scene_manager_->getRootSceneNode());
   update_look();
   update_limits();
@@ -134,26 +93,30 @@ void TerrainDisplay::reset() {
   if (isEnabled()) subscribe();
 }
 
-void TerrainDisplay::setTopic(const QString& topic, const QString&) { topic_->setString(topic); }
+void TerrainDisplay::setTopic(const QString& topic, const QString&) { properties_->topic().setString(topic); }
 
 void TerrainDisplay::update(float, float) {
   const double begin = render::RebuildQueue::steady_seconds(), begin_of_work = processor_seconds();
   frame_messages_ = 0;
+  if (const Appearance::ConstPtr appearance = appearance_.take()) properties_->see(*appearance);
   const bool incomplete = take_changes();
   rviz::ViewManager* const views = context_->getViewManager();
   if (maps_.count("elevation") && place() && views->getCurrent()) {
     update_views();
-    if (fit_pending_ && fit_view_->getBool()) fit_view();
+    if (fit_pending_ && properties_->fit_view()) fit_view();
     fit_pending_ = false;
     const Ogre::Camera* const camera = views->getCurrent()->getCamera();
-    if (camera && sky_shown_->getBool())
+    if (camera && properties_->sky())
       sky_->show(*camera);
     else
       sky_->hide();
     const Ogre::Viewport* const viewport = camera ? camera->getViewport() : nullptr;
     const double spent = render::RebuildQueue::steady_seconds() - begin;
-    const double budget = 1e-3 * static_cast<double>(budget_->getFloat());
-    if (viewport) scene_->update(*camera, viewport->getActualHeight(), budget - spent, incomplete);
+    if (viewport) {
+      const int height = viewport->getActualHeight();
+      near_ground_->update(*camera, height, maps_, properties_->limits().pixels);
+      scene_->update(*camera, height, properties_->budget() - spent, incomplete);
+    }
   }
   counts_ = scene_->counts();
   report();
@@ -165,9 +128,7 @@ void TerrainDisplay::update(float, float) {
 
 std::string TerrainDisplay::node() const { return source_ ? source_->node() : ""; }
 
-double TerrainDisplay::vertical_exaggeration() const {
-  return static_cast<double>(exaggeration_->getFloat());
-}
+double TerrainDisplay::vertical_exaggeration() const { return properties_->vertical_exaggeration(); }
 
 void TerrainDisplay::subscribe() {
   if (!initialized() || !isEnabled()) return;
@@ -175,12 +136,13 @@ void TerrainDisplay::subscribe() {
   clearStatuses();
   statuses_.clear();
   try {
-    source_ = std::make_unique<TerrainSource>(topic_->getTopicStd());
+    source_ = std::make_unique<TerrainSource>(properties_->topic().getTopicStd());
   } catch (const ConfigError& error) {
     set_status(
         {StatusProperty::Error, "Topic", std::string(error.what()) + ". Choose another Elevation Topic."});
     return;
   }
+  appearance_.subscribe(threaded_nh_, source_->node() + "/appearance");
   update_look();
   subscribe_views();
 }
@@ -188,9 +150,12 @@ void TerrainDisplay::subscribe() {
 void TerrainDisplay::unsubscribe() {
   source_.reset();
   maps_.clear();
-  overlay_->clear();
+  properties_->forget_maps();
+  near_ground_->follow("");
+  appearance_.subscribe(threaded_nh_, "");
   scene_->clear();
   legend_->hide();
+  second_legend_->hide();
   plants_view_->subscribe(threaded_nh_, "");
   wind_view_->subscribe(threaded_nh_, "");
   ripples_view_->subscribe(threaded_nh_, "");
@@ -199,37 +164,31 @@ void TerrainDisplay::unsubscribe() {
 void TerrainDisplay::subscribe_views() {
   if (!source_) return;
   const std::string node = source_->node();
-  plants_view_->subscribe(threaded_nh_, plants_->getBool() ? node + "/plants" : "");
-  wind_view_->subscribe(threaded_nh_, wind_->getBool() ? node + "/wind" : "");
-  ripples_view_->subscribe(threaded_nh_, ripples_->getBool() ? node + "/micro_relief" : "");
+  const TerrainProperties& shown = *properties_;
+  plants_view_->subscribe(threaded_nh_, shown.plants() ? node + "/plants" : "");
+  wind_view_->subscribe(threaded_nh_, shown.wind() ? node + "/wind" : "");
+  ripples_view_->subscribe(threaded_nh_, shown.ripples() ? node + "/micro_relief" : "");
+  near_ground_->follow(shown.micro_relief() ? node : "");
 }
 
 void TerrainDisplay::update_look() {
   if (!scene_) return;
-  render::TerrainLook look;
-  look.overlay = overlay_->overlay();
-  look.materials = materials_->getBool();
-  look.water = water_->getBool();
-  look.shadows = shadows_->getBool();
-  look.ripples = true;
-  look.vertical_exaggeration = static_cast<double>(exaggeration_->getFloat());
-  look.contour_interval = static_cast<double>(contours_->getFloat());
+  const render::TerrainLook look = properties_->look();
   scene_->set_look(look);
+  near_ground_->touch();
   counts_ = scene_->counts();  // blocks wait from now on, not from the next frame on
   if (!source_) return;
   std::vector<std::string> layers = layers_for(look);
   std::replace(layers.begin(), layers.end(), std::string(cost_layer), source_of_layer(cost_layer));
   source_->set_layers(layers);
   keep_layers(layers, maps_);
-  scene_->set_window(windows_of(maps_, overlay_->reference()));
-  if (look.overlay.active() && overlay_->legend())
-    legend_->show(overlay_->title(), look.overlay);
-  else
-    legend_->hide();
+  scene_->set_window(windows_of(maps_, properties_->reference()));
+  show_legend(*legend_, properties_->overlay(), look.overlay);
+  show_legend(*second_legend_, properties_->second(), look.second);
 }
 
 void TerrainDisplay::update_limits() {
-  if (scene_) scene_->set_limits({static_cast<double>(quad_pixels_->getFloat()), triangles_->getInt()});
+  if (scene_) scene_->set_limits(properties_->limits());
 }
 
 // ---- the terrain ----
@@ -247,12 +206,12 @@ bool TerrainDisplay::take_changes() {
     if (layer == "elevation") {
       take_elevation(one);
     } else {
-      overlay_->see(*one.map);
+      properties_->see(*one.map);
       for (const render::CellRectangle& cells : one.changed) scene_->touch(cells);
     }
   }
   if (changes.empty()) return held_ = false;
-  scene_->set_window(windows_of(maps_, overlay_->reference()));
+  scene_->set_window(windows_of(maps_, properties_->reference()));
   const auto elevation = maps_.find("elevation"), sand = maps_.find("sand_depth");
   const bool behind = elevation != maps_.end() && sand != maps_.end() &&
                       sand->second->info().step < elevation->second->info().step;
@@ -262,13 +221,13 @@ bool TerrainDisplay::take_changes() {
 void TerrainDisplay::take_elevation(const CollectedChange& change_of_elevation) {
   const LayerMap::Info& info = change_of_elevation.map->info();
   if (change_of_elevation.replaced) {
-    overlay_->clear();
+    properties_->forget_maps();
     fit_pending_ = true;
     scene_->set_grid(static_cast<int>(info.width), static_cast<int>(info.height), info.cell_size,
-                     windows_of(maps_, overlay_->reference()));
+                     windows_of(maps_, properties_->reference()));
   }
   for (const render::CellRectangle& cells : change_of_elevation.changed) scene_->touch(cells);
-  overlay_->see_elevation(change_of_elevation.map);
+  properties_->see_elevation(change_of_elevation.map);
 }
 
 /// Moves the terrain to where tf says that its frame is; false and a status if tf does not know.
@@ -293,7 +252,7 @@ void TerrainDisplay::fit_view() {
   const double diagonal = std::hypot(width, height);
   constexpr double below = 0.06;  // Perspective makes the near corner large: it reaches the lower edge first.
   const double focus =
-      static_cast<double>(usual_height(elevation) * exaggeration_->getFloat()) - below * diagonal;
+      static_cast<double>(usual_height(elevation)) * vertical_exaggeration() - below * diagonal;
   const Ogre::Vector3 from_corner(static_cast<Ogre::Real>(width / 2), static_cast<Ogre::Real>(height / 2),
                                   static_cast<Ogre::Real>(focus));
   show_in_view(*context_, scene_node_->getPosition() + scene_node_->getOrientation() * from_corner, diagonal);
@@ -302,9 +261,8 @@ void TerrainDisplay::fit_view() {
 void TerrainDisplay::update_views() {
   const LayerMap& elevation = *maps_.at("elevation");
   const LayerMap::Info& info = elevation.info();
-  plants_view_->update(info.origin_x, info.origin_y, static_cast<double>(exaggeration_->getFloat()),
-                       most_plants_->getInt());
-  wind_view_->update(elevation, most_arrows_->getInt());
+  plants_view_->update(info.origin_x, info.origin_y, vertical_exaggeration(), properties_->most_plants());
+  wind_view_->update(elevation, properties_->most_arrows());
   ripples_view_->update();
 }
 
@@ -317,9 +275,17 @@ void TerrainDisplay::report() {
               "-DCMAKE_BUILD_TYPE=Release."});
 #endif
   if (!source_) return;
-  const std::string& layer = scene_->look().overlay.layer;
-  set_status(status_of_topic(topic_->getTopicStd(), source_->client(), maps_));
-  set_status(status_of_overlay(layer, overlay_->title(), maps_));
+  set_status(status_of_topic(properties_->topic().getTopicStd(), source_->client(), maps_));
+  const render::TerrainLook& look = scene_->look();
+  set_status(status_of_overlay("Overlay", look.overlay.layer, properties_->overlay().title(), maps_));
+  set_status(status_of_overlay("Second Overlay", look.second.layer, properties_->second().title(), maps_));
+  if (look.shading != render::Shading::sun)
+    set_status(status_of_overlay("Shading", render::illumination_layer, render::illumination_layer, maps_));
+  else
+    set_status({StatusProperty::Ok, "Shading", "sun"});
+  set_status({near_ground_->failed() ? StatusProperty::Warn : StatusProperty::Ok, "Micro Relief",
+              near_ground_->status().empty() ? "none: the view is not close to the ground"
+                                             : near_ground_->status()});
   const auto elevation = maps_.find("elevation");
   if (elevation == maps_.end()) return;
   set_status(status_of_terrain(elevation->second->info(), counts_));

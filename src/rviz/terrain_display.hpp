@@ -8,22 +8,17 @@
 
 #include "src/rviz/legend.hpp"
 #include "src/rviz/map_windows.hpp"
-#include "src/rviz/overlay_properties.hpp"
+#include "src/rviz/near_ground_view.hpp"
 #include "src/rviz/placement.hpp"
 #include "src/rviz/plants_view.hpp"
 #include "src/rviz/ripples_view.hpp"
 #include "src/rviz/sky.hpp"
+#include "src/rviz/terrain_properties.hpp"
 #include "src/rviz/terrain_scene.hpp"
 #include "src/rviz/terrain_source.hpp"
 #include "src/rviz/terrain_status.hpp"
+#include "src/rviz/topic_inbox.hpp"
 #include "src/rviz/wind_view.hpp"
-
-namespace rviz {
-class BoolProperty;
-class FloatProperty;
-class IntProperty;
-class RosTopicProperty;
-}  // namespace rviz
 
 namespace desert_sim {
 
@@ -34,8 +29,9 @@ class TerrainDisplay : public rviz::Display {
   Q_PROPERTY(int frame_messages READ frame_messages)             ///< keyframes and updates that it took over
   Q_PROPERTY(int blocks READ blocks)
   Q_PROPERTY(int waiting_blocks READ waiting_blocks)
-  Q_PROPERTY(qulonglong built_blocks READ built_blocks)  ///< since the start
-  Q_PROPERTY(qlonglong triangles READ triangles)         ///< of the ground
+  Q_PROPERTY(qulonglong built_blocks READ built_blocks)     ///< since the start
+  Q_PROPERTY(qlonglong triangles READ triangles)            ///< of the ground
+  Q_PROPERTY(qlonglong near_triangles READ near_triangles)  ///< of the ground with micro-relief
 
  public:
   TerrainDisplay();
@@ -59,6 +55,7 @@ class TerrainDisplay : public rviz::Display {
   int waiting_blocks() const { return counts_.waiting; }
   qulonglong built_blocks() const { return counts_.built; }
   qlonglong triangles() const { return counts_.triangles; }
+  qlonglong near_triangles() const { return counts_.near_triangles; }
 
  protected:
   void onInitialize() override;
@@ -81,19 +78,17 @@ class TerrainDisplay : public rviz::Display {
   void report();
   void set_status(const DisplayStatus& status);
 
-  rviz::RosTopicProperty* topic_;
-  rviz::FloatProperty *exaggeration_, *contours_, *budget_, *quad_pixels_;
-  rviz::IntProperty *triangles_, *most_plants_, *most_arrows_;
-  rviz::BoolProperty *materials_, *water_, *shadows_, *sky_shown_, *ripples_, *plants_, *wind_, *fit_view_;
+  std::unique_ptr<TerrainProperties> properties_;
   bool fit_pending_ = false;  ///< there is another terrain, which the view was not fitted to
-  std::unique_ptr<OverlayProperties> overlay_;
 
+  TopicInbox<Appearance> appearance_;
   std::unique_ptr<RipplesView> ripples_view_;
   std::unique_ptr<TerrainScene> scene_;
+  std::unique_ptr<NearGroundView> near_ground_;
   Ogre::SceneNode* level_node_ = nullptr;  ///< at the grid's corner, without exaggeration
   std::unique_ptr<PlantsView> plants_view_;
   std::unique_ptr<WindView> wind_view_;
-  std::unique_ptr<Legend> legend_;
+  std::unique_ptr<Legend> legend_, second_legend_;
   std::unique_ptr<Sky> sky_;
   std::unique_ptr<TerrainSource> source_;
   LayerMaps maps_;  ///< the elevation decides the grid

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "src/render/contour_lines.hpp"
 #include "src/rviz/materials.hpp"
 
 namespace desert_sim {
@@ -38,6 +39,8 @@ TerrainScene::TerrainScene(Ogre::SceneNode* parent)
     : parent_(parent), node_(parent->createChildSceneNode()), ground_material_(materials::new_ground()) {}
 
 TerrainScene::~TerrainScene() {
+  near_ground_.reset();
+  near_contours_.reset();
   blocks_.clear();
   node_->getCreator()->destroySceneNode(node_);
   materials::remove(ground_material_);
@@ -49,6 +52,9 @@ void TerrainScene::set_grid(int width, int height, double cell_size, const rende
   grid_.base = render::base_of_walls(grid_.layout, cell_size, window_);
   queue_.reset(grid_.layout);
   staged_.clear();
+  next_near_.reset();
+  batch_near_.reset();
+  show_near({});
   blocks_.clear();
   blocks_.resize(static_cast<std::size_t>(grid_.layout.count()));
   boxes_.clear();
@@ -61,6 +67,31 @@ void TerrainScene::set_look(const render::TerrainLook& look) {
   node_->setScale(1, 1, static_cast<Ogre::Real>(look.vertical_exaggeration));
   grid_.shadow_reach = 0;  // chosen anew with the next batch
   queue_.touch_all();
+}
+
+void TerrainScene::set_near_ground(const render::CellRectangle& cells, render::Mesh ground) {
+  const bool stays = cells == grid_.hole && !next_near_ && !batch_near_;
+  if (stays && cells.empty()) return;
+  if (stays) return show_near({cells, std::move(ground)});
+  for (const render::CellRectangle& changed : {grid_.hole, cells})
+    if (!changed.empty()) queue_.touch(changed);
+  if (next_near_ && !next_near_->cells.empty()) queue_.touch(next_near_->cells);
+  next_near_ = NearMesh{cells, std::move(ground)};
+}
+
+void TerrainScene::show_near(const NearMesh& near) {
+  put(near_ground_, near.ground, ground_material_, Ogre::RenderOperation::OT_TRIANGLE_LIST);
+  put(near_contours_, render::contour_lines(near.ground, look_.contour_interval), materials::translucent(),
+      Ogre::RenderOperation::OT_LINE_LIST);
+  near_triangles_ = static_cast<std::int64_t>(near.ground.indices.size() / 3);
+}
+
+/// The hole in the blocks is cut between cells: where it is, or is to be, they are drawn cell by cell.
+void TerrainScene::keep_fine(std::vector<int>& levels) const {
+  const render::CellRectangle& next = next_near_ ? next_near_->cells : grid_.hole;
+  for (const render::CellRectangle& hole : {grid_.hole, next})
+    for (const int block : hole.empty() ? std::vector<int>() : grid_.layout.touched(hole, queue_.levels()))
+      levels[static_cast<std::size_t>(block)] = 0;
 }
 
 render::View TerrainScene::view_of(const Ogre::Camera& camera, int viewport_height) const {
@@ -89,20 +120,29 @@ void TerrainScene::begin_batch(const render::View& view) {
     queue_.touch_all();
   }
   batch_window_ = window_;
+  if (next_near_) {
+    grid_.hole = next_near_->cells;
+    batch_near_ = std::move(next_near_);
+    next_near_.reset();
+  }
   queue_.begin_batch(view, boxes);
 }
 
 void TerrainScene::update(const Ogre::Camera& camera, int viewport_height, double seconds, bool hold) {
   if (grid_.layout.count() == 0) return;
   const render::View view = view_of(camera, viewport_height);
-  queue_.set_levels(
-      render::choose_levels(grid_.layout, grid_.cell_size, view, boxes_as_seen(), queue_.levels(), limits_));
+  std::vector<int> levels =
+      render::choose_levels(grid_.layout, grid_.cell_size, view, boxes_as_seen(), queue_.levels(), limits_);
+  keep_fine(levels);
+  queue_.set_levels(levels);
   if (queue_.waiting() == 0) return;
   if (queue_.batch_complete() && !hold) begin_batch(view);
   queue_.run(seconds, [this](int block, int level) { build(block, level); });
   if (!queue_.batch_complete()) return;
   for (const Staged& one : staged_) show(one.block, one.meshes);
   staged_.clear();
+  if (batch_near_) show_near(*batch_near_);
+  batch_near_.reset();
 }
 
 void TerrainScene::build(int number, int level) {
@@ -115,18 +155,19 @@ void TerrainScene::build(int number, int level) {
     show(number, meshes);
 }
 
+void TerrainScene::put(std::unique_ptr<MeshObject>& object, const render::Mesh& mesh,
+                       const Ogre::MaterialPtr& material, Ogre::RenderOperation::OperationType type) {
+  if (mesh.empty()) {
+    object.reset();
+    return;
+  }
+  if (!object) object = std::make_unique<MeshObject>(node_, material, type);
+  object->set_mesh(mesh);
+}
+
 void TerrainScene::show(int number, const render::TerrainBlock& meshes) {
   using Ogre::RenderOperation;
   Block& block = blocks_[static_cast<std::size_t>(number)];
-  const auto put = [this](std::unique_ptr<MeshObject>& object, const render::Mesh& mesh,
-                          const Ogre::MaterialPtr& material, RenderOperation::OperationType type) {
-    if (mesh.empty()) {
-      object.reset();
-      return;
-    }
-    if (!object) object = std::make_unique<MeshObject>(node_, material, type);
-    object->set_mesh(mesh);
-  };
   put(block.ground, meshes.ground, ground_material_, RenderOperation::OT_TRIANGLE_LIST);
   put(block.water, meshes.water, materials::translucent(), RenderOperation::OT_TRIANGLE_LIST);
   put(block.contours, meshes.contours, materials::translucent(), RenderOperation::OT_LINE_LIST);
@@ -135,7 +176,7 @@ void TerrainScene::show(int number, const render::TerrainBlock& meshes) {
 }
 
 TerrainScene::Counts TerrainScene::counts() const {
-  Counts counts{grid_.layout.count(), queue_.waiting(), built_, 0};
+  Counts counts{grid_.layout.count(), queue_.waiting(), built_, 0, near_triangles_};
   for (const Block& block : blocks_) counts.triangles += block.triangles;
   return counts;
 }

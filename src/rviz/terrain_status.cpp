@@ -31,18 +31,19 @@ DisplayStatus status_of_topic(const std::string& topic, const TerrainClient& cli
               " updates"};
 }
 
-DisplayStatus status_of_overlay(const std::string& layer, const std::string& title, const LayerMaps& maps) {
-  if (layer.empty()) return {StatusProperty::Ok, "Overlay", "none"};
+DisplayStatus status_of_overlay(const char* status, const std::string& layer, const std::string& title,
+                                const LayerMaps& maps) {
+  if (layer.empty()) return {StatusProperty::Ok, status, "none"};
   const std::string needed = source_of_layer(layer);
   const bool computed = layer == render::slope_layer || layer == render::change_layer;
   if (!computed && !TerrainSource::is_known(needed))
-    return {StatusProperty::Error, "Overlay",
+    return {StatusProperty::Error, status,
             "There is no layer '" + layer + "': choose change, cost, or one of " +
                 joined(TerrainClient::known_layers()) + "."};
   if (!computed && !maps.count(needed))
-    return {StatusProperty::Warn, "Overlay",
+    return {StatusProperty::Warn, status,
             "Waiting for the layer '" + needed + "': the node sends it when it has computed it."};
-  return {StatusProperty::Ok, "Overlay", title};
+  return {StatusProperty::Ok, status, title};
 }
 
 DisplayStatus status_of_terrain(const LayerMap::Info& elevation, const TerrainScene::Counts& counts) {

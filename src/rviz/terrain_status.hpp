@@ -21,7 +21,8 @@ struct DisplayStatus {
 DisplayStatus status_of_topic(const std::string& topic, const TerrainClient& client, const LayerMaps& maps);
 
 /// `layer` is the overlay's, empty if there is none; `title` is what its legend calls it.
-DisplayStatus status_of_overlay(const std::string& layer, const std::string& title, const LayerMaps& maps);
+DisplayStatus status_of_overlay(const char* status, const std::string& layer, const std::string& title,
+                                const LayerMaps& maps);
 
 DisplayStatus status_of_terrain(const LayerMap::Info& elevation, const TerrainScene::Counts& counts);
 

@@ -21,14 +21,14 @@ constexpr double pi = 3.14159265358979323846, radians = pi / 180;
 constexpr int samples = 2;                  // a side of a pixel
 constexpr int drawn_triangles = 4'000'000;  // at most, of the ground
 
-render::Overlay overlay_of(const ViewParameters& p) {
+render::Overlay overlay_of(const std::string& layer, double low, double high) {
   render::Overlay overlay;
-  if (p.overlay.empty()) return overlay;
-  const render::LayerStyle style = render::layer_style(p.overlay);
-  const bool usual = p.overlay_low == p.overlay_high;
-  overlay.layer = p.overlay;
-  overlay.low = usual ? style.low : static_cast<float>(p.overlay_low);
-  overlay.high = usual ? style.high : static_cast<float>(p.overlay_high);
+  if (layer.empty()) return overlay;
+  const render::LayerStyle style = render::layer_style(layer);
+  const bool usual = low == high;
+  overlay.layer = layer;
+  overlay.low = usual ? style.low : static_cast<float>(low);
+  overlay.high = usual ? style.high : static_cast<float>(high);
   overlay.map = style.map;
   return overlay;
 }
@@ -82,7 +82,10 @@ std::vector<render::PackedColour> sky_behind(double camera_azimuth_deg, int widt
 
 render::TerrainLook look_of(const ViewParameters& p) {
   render::TerrainLook look;
-  look.overlay = overlay_of(p);
+  look.overlay = overlay_of(p.overlay, p.overlay_low, p.overlay_high);
+  look.second = overlay_of(p.second_overlay, p.second_low, p.second_high);
+  if (p.divide > 0) look.divide = p.divide;
+  look.shading = p.shading;
   look.water = p.water;
   look.contour_interval = p.contour_interval;
   return look;
@@ -102,8 +105,10 @@ ViewParameters view_parameters(const std::vector<std::string>& settings) {
   std::set<std::string> known;
   yaml::read_parameters(given, "", errors, p, known);
   yaml::reject_unknown_keys(given, "", known, errors);
-  if (!p.overlay.empty() && !find_map_layer(p.overlay))
-    errors.add("overlay", not_one_of(p.overlay, map_layer_names()));
+  for (const auto& [key, layer] : {std::pair("overlay", p.overlay), {"second_overlay", p.second_overlay}})
+    if (!layer.empty() && !find_map_layer(layer)) errors.add(key, not_one_of(layer, map_layer_names()));
+  if (p.divide > 0 && p.second_overlay.empty())
+    errors.add("divide", "is set, but there is no second_overlay to stand beside the first one");
   errors.throw_if_any();
   return p;
 }
@@ -136,6 +141,7 @@ render::Picture ObliqueView::draw(Simulation& simulation) {
   const auto lowest = static_cast<double>(*range.first), highest = static_cast<double>(*range.second);
   if (exaggeration_ == 0) set_up(s, lowest, highest);
   look.vertical_exaggeration = exaggeration_;
+  look.palette = s.palette;
 
   const render::Projection projection({parameters_.azimuth_deg, parameters_.elevation_deg, parameters_.zoom},
                                       bounds_, rasteriser_.width(), rasteriser_.height());
@@ -144,8 +150,11 @@ render::Picture ObliqueView::draw(Simulation& simulation) {
   const std::vector<int> levels =
       render::choose_levels(layout, s.cell_size, projection.view(exaggeration_), boxes,
                             std::vector<int>(boxes.size(), -1), {samples, drawn_triangles});
-  const render::TerrainGrid grid{layout, s.cell_size, static_cast<float>(bounds_.min().z() / exaggeration_),
-                                 render::shadow_reach(exaggeration_ * (highest - lowest), s.cell_size)};
+  const render::TerrainGrid grid{layout,
+                                 s.cell_size,
+                                 static_cast<float>(bounds_.min().z() / exaggeration_),
+                                 render::shadow_reach(exaggeration_ * (highest - lowest), s.cell_size),
+                                 {}};
   const std::vector<render::TerrainBlock> blocks = blocks_of(s, levels, grid, look);
 
   rasteriser_.clear(sky_);

@@ -7,11 +7,14 @@
 
 #include "src/core/parameter_table.hpp"
 #include "src/render/rasteriser.hpp"
+#include "src/render/terrain_look.hpp"
 #include "src/simulation/simulation.hpp"
 
 namespace desert_sim {
 
 /// Where the camera stands, and what it shows. Given as --view KEY=VALUE.
+constexpr const char* shading_names[] = {"sun", "illumination", "both"};
+
 struct ViewParameters {
   int width = 1280;
   int height = 720;
@@ -23,6 +26,11 @@ struct ViewParameters {
   std::string overlay;
   double overlay_low = 0;
   double overlay_high = 0;
+  std::string second_overlay;
+  double second_low = 0;
+  double second_high = 0;
+  double divide = 0;
+  render::Shading shading = render::Shading::sun;
   bool water = true;
   bool plants = true;
   int fps = 25;
@@ -44,6 +52,13 @@ constexpr auto parameter_table(const ViewParameters*) {
       parameter("overlay_low", &P::overlay_low, -1e6, 1e6, "layer's", "Value with the first colour."),
       parameter("overlay_high", &P::overlay_high, -1e6, 1e6, "layer's",
                 "Value with the last colour; equal to overlay_low, both are the layer's usual range."),
+      parameter("second_overlay", &P::second_overlay, "Another layer, on the first one or beside it."),
+      parameter("second_low", &P::second_low, -1e6, 1e6, "layer's", "As overlay_low."),
+      parameter("second_high", &P::second_high, -1e6, 1e6, "layer's", "As overlay_high."),
+      parameter("divide", &P::divide, 0, 1, "1",
+                "Share of the width that the first overlay takes, in the west; 0: both lie on each other."),
+      parameter("shading", &P::shading, shading_names,
+                "What brightens the ground: the sun, the layer illumination, or their product."),
       parameter("water", &P::water, "Whether water is drawn."),
       parameter("plants", &P::plants, "Whether plants are drawn one by one."),
       parameter("fps", &P::fps, 1, 120, "1/s", "Pictures in a second of a film."));

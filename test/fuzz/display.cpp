@@ -66,9 +66,11 @@ void draw(const std::shared_ptr<const LayerMap>& map, FuzzedDataProvider& data) 
   render::TerrainLook look;
   look.contour_interval = 0.5;
   look.overlay.layer = data.PickValueInArray({"", "cost", "water_depth", "slope", "change"});
-  const render::TerrainGrid grid{layout, info.cell_size,
+  const render::TerrainGrid grid{layout,
+                                 info.cell_size,
                                  render::base_of_walls(layout, info.cell_size, window),
-                                 data.ConsumeIntegralInRange(0, render::longest_shadow)};
+                                 data.ConsumeIntegralInRange(0, render::longest_shadow),
+                                 {}};
   for (int block = 0; block < layout.count(); ++block)
     for (const int level : {0, 3}) {
       const render::TerrainBlock meshes = render::build_terrain_block(grid, block, level, window, look);

@@ -46,6 +46,35 @@ void add_layer(GridMap& map, const MapLayer& layer, std::vector<float> values, i
   map.data.back().data = std::move(values);
 }
 
+/// With micro-relief on the elevation.
+std::vector<float> fine_values(const Snapshot& s, const MapLayer& layer, const MicroReliefWindow& window) {
+  return layer.layer == Layer::elevation ? MicroRelief(s).elevations(window)
+                                         : nearest_values(s, layer, window);
+}
+
+/// A submap without layers, with its south-west corner at (west, south).
+TerrainSubmap empty_submap(const TerrainState& state, const std::string& frame, double cell_size, int width,
+                           int height, double west, double south) {
+  TerrainSubmap map;
+  map.header = header_of(state.moment, frame);
+  map.step = state.snapshot->step;
+  map.sim_time = state.snapshot->time;
+  map.width = static_cast<std::uint32_t>(width);
+  map.height = static_cast<std::uint32_t>(height);
+  map.cell_size = cell_size;
+  map.origin = origin_of(*state.snapshot);
+  map.origin.position.x = west;
+  map.origin.position.y = south;
+  return map;
+}
+
+void add_layer(TerrainSubmap& map, const MapLayer& layer, std::vector<float> values) {
+  map.layers.emplace_back();
+  map.layers.back().name = layer.name;
+  map.layers.back().unit = info(layer.layer).unit;
+  map.layers.back().data = std::move(values);
+}
+
 }  // namespace
 
 GridMap grid_map(const TerrainState& state, const std::string& frame, const std::vector<MapLayer>& layers,
@@ -64,32 +93,25 @@ GridMap grid_map(const TerrainState& state, const std::string& frame, const std:
                  const MicroReliefWindow& window) {
   GridMap map = empty_map(state, frame, window.resolution, window.columns, window.rows, window.x0, window.y0);
   for (const MapLayer& layer : layers)
-    add_layer(map, layer,
-              layer.layer == Layer::elevation ? MicroRelief(*state.snapshot).elevations(window)
-                                              : nearest_values(*state.snapshot, layer, window),
-              window.columns);
+    add_layer(map, layer, fine_values(*state.snapshot, layer, window), window.columns);
   return map;
 }
 
 TerrainSubmap terrain_submap(const TerrainState& state, const std::string& frame,
                              const std::vector<MapLayer>& layers, const MapWindow& window) {
   const Snapshot& s = *state.snapshot;
-  TerrainSubmap map;
-  map.header = header_of(state.moment, frame);
-  map.step = s.step;
-  map.sim_time = s.time;
-  map.width = static_cast<std::uint32_t>(window.width);
-  map.height = static_cast<std::uint32_t>(window.height);
-  map.cell_size = s.cell_size;
-  map.origin = origin_of(s);
-  map.origin.position.x += window.x0 * s.cell_size;
-  map.origin.position.y += window.y0 * s.cell_size;
-  for (const MapLayer& layer : layers) {
-    map.layers.emplace_back();
-    map.layers.back().name = layer.name;
-    map.layers.back().unit = info(layer.layer).unit;
-    map.layers.back().data = window_values(s, layer, window);
-  }
+  TerrainSubmap map =
+      empty_submap(state, frame, s.cell_size, window.width, window.height,
+                   s.origin_x + window.x0 * s.cell_size, s.origin_y + window.y0 * s.cell_size);
+  for (const MapLayer& layer : layers) add_layer(map, layer, window_values(s, layer, window));
+  return map;
+}
+
+TerrainSubmap terrain_submap(const TerrainState& state, const std::string& frame,
+                             const std::vector<MapLayer>& layers, const MicroReliefWindow& window) {
+  TerrainSubmap map =
+      empty_submap(state, frame, window.resolution, window.columns, window.rows, window.x0, window.y0);
+  for (const MapLayer& layer : layers) add_layer(map, layer, fine_values(*state.snapshot, layer, window));
   return map;
 }
 

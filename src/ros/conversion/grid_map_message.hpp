@@ -22,7 +22,10 @@ GridMap grid_map(const TerrainState& state, const std::string& frame, const std:
 GridMap grid_map(const TerrainState& state, const std::string& frame, const std::vector<MapLayer>& layers,
                  const MicroReliefWindow& window);
 
+// The same as submaps.
 TerrainSubmap terrain_submap(const TerrainState& state, const std::string& frame,
                              const std::vector<MapLayer>& layers, const MapWindow& window);
+TerrainSubmap terrain_submap(const TerrainState& state, const std::string& frame,
+                             const std::vector<MapLayer>& layers, const MicroReliefWindow& window);
 
 }  // namespace desert_sim

@@ -36,10 +36,11 @@ Colour SurfaceColour::material(std::size_t i) const {
   const auto species = static_cast<std::size_t>(value(plants_, i));
   if (species > 0 && species <= s_.crown_colours.size()) {
     const auto& [r, g, b] = s_.crown_colours[species - 1];
-    m.plants = {r, g, b};
+    m.plants = Colour{r, g, b};
   }
   const float depth = value(water_, i);
-  return mix(ground_colour(m), render::water_colour(depth), render::water_opacity(depth));
+  return mix(ground_colour(m, s_.palette), render::water_colour(depth, s_.palette),
+             render::water_opacity(depth));
 }
 
 Colour SurfaceColour::light(int x, int y) const {

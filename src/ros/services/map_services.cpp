@@ -7,6 +7,7 @@
 #include <chrono>
 #include <memory>
 #include <mutex>
+#include <sstream>
 
 #include "src/core/error.hpp"
 #include "src/grid_map/grid_map_msg.hpp"
@@ -97,8 +98,27 @@ MapCut cut_region(const ServiceContext& c, const std::vector<MapLayer>& layers,
   });
 }
 
+/// Throws ConfigError unless squares of that size are finer than the terrain's cells, and can be told apart.
+void require_resolution(const ServiceContext& c, double resolution) {
+  const double cell = c.simulation.terrain({}).get().snapshot->cell_size;
+  if (resolution >= finest_detail && resolution <= cell) return;
+  std::ostringstream text;
+  text << "resolution: " << resolution << " m is neither 0 nor in [" << finest_detail << ", " << cell
+       << "], up to the width of the terrain's cells";
+  throw ConfigError(text.str());
+}
+
 void get_submap(const ServiceContext& c, const GetSubmapRequest& r, GetSubmapResponse& response) {
   const std::vector<MapLayer> layers = requested_layers(r.layers);
+  if (r.resolution != 0) {
+    require_finite(r.center, "center");
+    require_resolution(c, r.resolution);
+    const tf2::Vector3 p = c.frames.to_terrain(r.header) * tf2::Vector3(r.center.x, r.center.y, r.center.z);
+    const MicroReliefCut cut = cut_micro_relief(c.simulation, layers, "region",
+                                                {p.x(), p.y(), r.length_x, r.length_y}, r.resolution);
+    response.map = terrain_submap(cut.state, c.frames.terrain_frame(), layers, cut.window);
+    return;
+  }
   const MapCut cut = cut_region(c, layers, r.header, r.center, r.length_x, r.length_y);
   response.map = terrain_submap(cut.state, c.frames.terrain_frame(), layers, cut.window);
 }

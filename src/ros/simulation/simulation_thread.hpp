@@ -149,6 +149,7 @@ class SimulationThread {
     PendingChanges changes;
     PendingCosts costs;
     PendingPlants plants;
+    PendingParticlePaths particle_paths;
     TerrainState get() const;
   };
   PendingState begin_state_copy(const std::vector<Layer>& layers, const RowBand& band,

@@ -122,8 +122,9 @@ SimulationThread::PendingState SimulationThread::begin_state_copy(const std::vec
   ++snapshots_;
   Simulation& s = session_->simulation();
   PendingState state{
-      moment(), s.views().begin_snapshot(in_use, band), {}, s.views().begin_costs(query.costs), {}};
+      moment(), s.views().begin_snapshot(in_use, band), {}, s.views().begin_costs(query.costs), {}, {}};
   if (query.plants) state.plants = s.views().begin_plants();
+  if (query.particle_paths > 0) state.particle_paths = s.views().begin_particle_paths(query.particle_paths);
   if (query.costs.update || query.costs.whole) costs_requested_ = clock().seconds();
   for (const auto& entry : query.held) note_request(entry.first);
   state.changes = s.views().begin_changes(query.held);
@@ -135,7 +136,8 @@ void SimulationThread::note_request(Layer layer) {
 }
 
 TerrainState SimulationThread::PendingState::get() const {
-  TerrainState state{moment, snapshot.get(), {}, costs.update.get(), costs.whole.get(), plants.get()};
+  TerrainState state{moment,       snapshot.get(),      {}, costs.update.get(), costs.whole.get(),
+                     plants.get(), particle_paths.get()};
   for (const auto& [layer, pending] : changes) state.changes[layer] = pending.get();
   return state;
 }

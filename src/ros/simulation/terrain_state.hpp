@@ -30,7 +30,8 @@ struct Moment {
 struct StateQuery {
   HeldQueries held;
   CostQuery costs;
-  bool plants = false;  ///< all plants, one by one
+  bool plants = false;     ///< all plants, one by one
+  int particle_paths = 0;  ///< at most so many
 };
 
 /// Layers of the terrain at one moment, and what else was asked for. It never changes once it is made.
@@ -43,6 +44,7 @@ struct TerrainState {
   std::shared_ptr<const CostChanges> cost_update;  ///< also null if they held no costs: then see whole_costs
   std::shared_ptr<const CostChanges> whole_costs;
   std::shared_ptr<const PlantList> plants;
+  std::shared_ptr<const ParticlePaths> particle_paths;
 };
 
 /// What save_terrain() takes. The snapshot has the elevation too.

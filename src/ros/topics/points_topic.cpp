@@ -133,8 +133,8 @@ sensor_msgs::PointCloud2Ptr water_cloud(const TerrainState& state, const ViewFra
     Sampling(s, count).for_each(s, [&](int x, int y, std::size_t i) {
       const float depth = (*water)[i];
       if (depth <= min_depth) return;
-      points.push_back(point_at(s, frame, x, y, elevation[i] + depth, render::water_colour(depth), depth,
-                                std::hypot(value(u, i), value(v, i))));
+      points.push_back(point_at(s, frame, x, y, elevation[i] + depth, render::water_colour(depth, s.palette),
+                                depth, std::hypot(value(u, i), value(v, i))));
     });
   const auto cloud = empty_cloud(state, frame.name, "depth", "speed");
   fill_cloud(*cloud, static_cast<int>(points.size()), 1, points);

@@ -19,6 +19,7 @@ namespace desert_sim {
 /// The rates and sizes of the topics that are no maps.
 struct PublisherParameters {
   double refresh_rate = 0.05;
+  double appearance_rate = 1;
   double keyframe_rate = 1;
   double update_rate = 10;
   double update_threshold = 0.005;
@@ -36,6 +37,8 @@ struct PublisherParameters {
   double water_points_rate = 4;
   double plants_rate = 1;
   int plants_count = 200000;
+  double particle_paths_rate = 1;
+  int particle_paths_count = 300;
   double plant_markers_rate = 1;
   int plant_markers_count = 10000;
   double forecast_rate = 0;
@@ -50,6 +53,7 @@ constexpr auto parameter_table(const PublisherParameters*) {
       parameter("refresh_rate", &P::refresh_rate, 0, 1000, "Hz",
                 "Every topic that shows something as a whole, whether it has changed or not, so that what "
                 "is recorded from any moment on has all of it; not updates."),
+      parameter("appearance_rate", &P::appearance_rate, 0, 1000, "Hz", "~appearance."),
       parameter("keyframe_rate", &P::keyframe_rate, 0, 1000, "Hz", "~elevation."),
       parameter("update_rate", &P::update_rate, 0, 1000, "Hz", "~elevation_updates."),
       parameter("update_threshold", &P::update_threshold, 0, 1000, "m",
@@ -75,6 +79,8 @@ constexpr auto parameter_table(const PublisherParameters*) {
       parameter("plants_rate", &P::plants_rate, 0, 1000, "Hz", "~plants."),
       parameter("plants_count", &P::plants_count, 1, 100000000, "1",
                 "At most so many plants; if there are more, the widest."),
+      parameter("particle_paths_rate", &P::particle_paths_rate, 0, 1000, "Hz", "~particle_paths."),
+      parameter("particle_paths_count", &P::particle_paths_count, 1, 100000, "1", "At most so many grains."),
       parameter("plant_markers_rate", &P::plant_markers_rate, 0, 1000, "Hz", "~plant_markers."),
       parameter("plant_markers_count", &P::plant_markers_count, 1, 1000000, "1",
                 "At most so many plants, the widest; a tenth of them with trunk and crown."),

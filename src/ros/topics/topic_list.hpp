@@ -24,22 +24,26 @@ void add_local_map_topic(const TopicContext& context, TopicList& topics);
 void add_costmap_topics(const TopicContext& context, TopicList& topics);
 void add_image_topic(const TopicContext& context, TopicList& topics);
 void add_micro_relief_topic(const TopicContext& context, TopicList& topics);
+void add_appearance_topic(const TopicContext& context, TopicList& topics);
+void add_particle_paths_topic(const TopicContext& context, TopicList& topics);
 
 /// All topics, in the order in which those that are due at the same time are published.
 inline TopicList make_topics(const TopicContext& context) {
   TopicList topics;
-  add_elevation_topics(context, topics);     // ~elevation_updates, ~elevation
-  add_layer_topics(context, topics);         // ~layers/<name>_updates, ~layers/<name>
-  add_micro_relief_topic(context, topics);   // ~micro_relief
-  add_wind_topic(context, topics);           // ~wind
-  add_wind_features_topic(context, topics);  // ~wind_features
-  add_wind_markers_topic(context, topics);   // ~wind_markers
-  add_points_topics(context, topics);        // ~points, ~water_points
-  add_plants_topics(context, topics);        // ~plants, ~plant_markers
-  add_grid_map_topic(context, topics);       // ~grid_map
-  add_local_map_topic(context, topics);      // ~local_map
-  add_costmap_topics(context, topics);       // ~costmap_updates, ~costmap
-  add_image_topic(context, topics);          // ~image
+  add_elevation_topics(context, topics);      // ~elevation_updates, ~elevation
+  add_layer_topics(context, topics);          // ~layers/<name>_updates, ~layers/<name>
+  add_micro_relief_topic(context, topics);    // ~micro_relief
+  add_wind_topic(context, topics);            // ~wind
+  add_wind_features_topic(context, topics);   // ~wind_features
+  add_wind_markers_topic(context, topics);    // ~wind_markers
+  add_points_topics(context, topics);         // ~points, ~water_points
+  add_plants_topics(context, topics);         // ~plants, ~plant_markers
+  add_grid_map_topic(context, topics);        // ~grid_map
+  add_local_map_topic(context, topics);       // ~local_map
+  add_costmap_topics(context, topics);        // ~costmap_updates, ~costmap
+  add_image_topic(context, topics);           // ~image
+  add_appearance_topic(context, topics);      // ~appearance
+  add_particle_paths_topic(context, topics);  // ~particle_paths
   return topics;
 }
 

@@ -137,6 +137,12 @@ int Pipeline::parts() const {
   return static_cast<int>(std::clamp(std::ceil(state_.scenario.run.time_step / longest), 1.0f, most));
 }
 
+Pipeline::PartClock Pipeline::next_part() {
+  StepContext c = context();
+  c.parts = parts();
+  return {c.tick(), c.time_step(), c.wind_above()};
+}
+
 void Pipeline::step() {
   StepContext c = context();
   c.parts = parts();

@@ -42,6 +42,13 @@ class Pipeline {
   /// Number of equal parts in which a step is done: none is longer than Process::longest_step, or than the
   /// shortest time between rows of a wind series.
   int parts() const;
+  /// The clock of the first part of the next step.
+  struct PartClock {
+    std::uint64_t tick;
+    float time_step;  ///< [s]
+    wind::Vector wind_above;
+  };
+  PartClock next_part();
   /// The step of one active process alone, for tests.
   void step_alone(const std::string& process);
   /// Brings derived layers and the angles of repose up to date, where no step has.

@@ -1,6 +1,5 @@
 /// The particle model of wind ripples.
-#include "kernels/particles/wang.hpp"
-#include "kernels/sand/saltation.hpp"
+#include "src/scenario/particle_inputs.hpp"
 #include "src/simulation/processes/processes.hpp"
 
 namespace desert_sim {
@@ -9,13 +8,9 @@ namespace {
 
 const std::string particle_section = register_section<ParticleParameters>("particle");
 
-const ParticleParameters& particle_parameters(const Scenario& s) { return s.get<ParticleParameters>(); }
-
 void fly(StepContext& c, ProcessWorkspace* workspace) {
-  const Scenario& s = c.scenario();
-  const particles::StepInputs in{
-      particle_parameters(s), s.get<ReposeParameters>(),      s.get<SaltationParameters>(), c.time_step(),
-      c.wind_above(),         c.fields.impact_strength.data()};
+  const particles::StepInputs in =
+      particle_inputs(c.scenario(), c.time_step(), c.wind_above(), c.fields.impact_strength.data());
   with_backend(c.exec(), [&](auto& e) {
     particles::step(e, c.terrain, in, c.dice(), c.state.ledger(),
                     workspace_as<particles::Workspace>(workspace));
@@ -30,7 +25,7 @@ Process wang_process() {
   p.parameters = {particle_section, "saltation", "repose"};
   p.source = "Wang & Hu 2012, Kok & Renno 2009, Owen 1964";
   p.header = "kernels/particles/wang.hpp";
-  p.active = [](const Scenario& s) { return has_sand_model(s, SandModel::wang); };
+  p.active = has_flying_grains;
   p.roles = {Role::sand_transport, Role::wind, Role::wind_shadow, Role::sand_flux, Role::reptation};
   p.reads = {Layer::bedrock, Layer::soil, Layer::obstacle, Layer::vegetation, Layer::moisture, Layer::water};
   p.writes = {Layer::sand, Layer::wind_x, Layer::wind_y};
@@ -42,7 +37,7 @@ Process wang_process() {
     with_backend(c.exec(), [&](auto& e) { particles::blow(e, c.terrain, c.wind_above()); });
   };
   p.longest_step = [](const SimulationState& state) {
-    return particles::longest_step(particle_parameters(state.scenario), state.terrain.grid(),
+    return particles::longest_step(state.scenario.get<ParticleParameters>(), state.terrain.grid(),
                                    state.wind_above());
   };
   return p;

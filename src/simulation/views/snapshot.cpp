@@ -8,6 +8,7 @@
 #include "kernels/sand/saltation.hpp"
 #include "kernels/view/layer_values.hpp"
 #include "src/render/colour.hpp"
+#include "src/scenario/appearance.hpp"
 #include "src/simulation/views/view_sections.hpp"
 #include "src/simulation/views/views.hpp"
 
@@ -68,6 +69,9 @@ std::shared_ptr<Snapshot> Views::make_empty_snapshot(const std::vector<Layer>& l
     const render::Colour crown = render::crown_colour(species.appearance.hue);
     s->crown_colours.push_back({crown.r, crown.g, crown.b});
   }
+  const auto& appearance = state_.scenario.get<AppearanceParameters>();
+  s->palette = palette_of(appearance);
+  s->wind_arrows = appearance.wind_arrows;
   for (Layer layer : layers) s->layers[layer];
   return s;
 }

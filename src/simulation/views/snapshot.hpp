@@ -8,9 +8,11 @@
 
 #include "kernels/field/layers.hpp"
 #include "kernels/micro_relief/ripple_size.hpp"
+#include "kernels/particles/wang.hpp"
 #include "kernels/plants/marking.hpp"
 #include "kernels/wind/wind.hpp"
 #include "kernels/wind/wind_features.hpp"
+#include "src/render/palette.hpp"
 #include "src/scenario/species.hpp"
 #include "src/simulation/views/staging.hpp"
 
@@ -51,6 +53,8 @@ struct Snapshot {
   std::vector<WindFeature> wind_features;  ///< of the scenario as it is now
   MicroReliefSettings micro_relief;
   std::vector<std::array<float, 3>> crown_colours;  ///< by species: of 1 in the layer plants, of 2 …
+  render::Palette palette;                          ///< of everything else
+  bool wind_arrows = false;                         ///< the scenario wants its wind to be seen
   std::map<Layer, std::vector<float>> layers;
   const std::vector<float>* find(Layer layer) const;  ///< null if it was not asked for
 };
@@ -67,5 +71,13 @@ struct PlantList {
 };
 
 using PendingPlants = Pending<PlantList>;
+
+/// The ways of some grains that the next step lifts, of the particle model (kernels/particles/wang.hpp).
+struct ParticlePaths {
+  double origin_x = 0, origin_y = 0;  ///< [m] of the terrain's south-west corner
+  std::vector<std::vector<particles::PathPoint>> paths;
+};
+
+using PendingParticlePaths = Pending<ParticlePaths>;
 
 }  // namespace desert_sim

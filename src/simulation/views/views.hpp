@@ -29,6 +29,9 @@ class Views {
   }
   /// Starts a copy of all plants to the host, in the order of their look-up.
   PendingPlants begin_plants();
+  /// Starts a copy of the ways of at most `number` grains, spread over the terrain, that the wind lifts in
+  /// the next step if nothing else happens before; none where another model moves the sand.
+  PendingParticlePaths begin_particle_paths(int number);
   /// Whether a snapshot of the layer has more to show than 0 everywhere.
   bool shows(Layer layer) const;
   /// Gives back the memory of layers that exist on request, until one is asked for again.

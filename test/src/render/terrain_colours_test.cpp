@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -89,6 +90,90 @@ TEST(Overlay, ShowsValuesInItsRangeAndNothingWhereTheyAreUnknown) {
         x == 7 ? ground_colour(sand) : colour_of(ColourMap::sequential, static_cast<float>(x) / 10);
     EXPECT_EQ(v.colour, pack(expected)) << x;
   }
+}
+
+/// Equal but for the rounding of mixtures.
+void expect_alike(const Colour& a, const Colour& b) {
+  EXPECT_NEAR(a.r, b.r, 1e-6f);
+  EXPECT_NEAR(a.g, b.g, 1e-6f);
+  EXPECT_NEAR(a.b, b.b, 1e-6f);
+}
+
+TEST(TerrainColours, AreThoseOfThePalette) {
+  Palette palette;
+  float n = 0;
+  for (const NamedColour& one : palette_colours) palette.*one.colour = {0.1f * ++n, 0, 1 - 0.1f * n};
+  SurfaceMaterials m;
+  m.sand = 1;
+  expect_alike(ground_colour(m, palette), palette.sand);
+  m = {};
+  m.soil = 1;
+  expect_alike(ground_colour(m, palette), palette.soil);
+  m = {};
+  m.resistance = 0;
+  expect_alike(ground_colour(m, palette), palette.weak_rock);
+  m.resistance = 1;
+  expect_alike(ground_colour(m, palette), palette.hard_rock);
+  m.obstacle = 1;
+  expect_alike(ground_colour(m, palette), palette.obstacle);
+  m = {};
+  m.vegetation = 1;
+  const Colour grown = ground_colour(m, palette);
+  EXPECT_EQ(pack(grown),
+            pack(mix(mix(palette.weak_rock, palette.hard_rock, 0.5f), palette.vegetation, 0.9f)));
+  expect_alike(water_colour(0, palette), palette.shallow_water);
+  expect_alike(water_colour(1000, palette), palette.deep_water);
+}
+
+constexpr auto level = [](int, int) { return 0.0f; };
+
+/// The colours of the vertices in the row of cell 16, by column.
+std::vector<PackedColour> row_of(const TerrainBlock& block) {
+  std::vector<PackedColour> colours(33);
+  for (const Vertex& v : block.ground.vertices)
+    if (static_cast<int>(v.y) == 16) colours[static_cast<std::size_t>(v.x)] = v.colour;
+  return colours;
+}
+
+TEST(Overlay, TwoLieOnEachOtherOrStandSideBySide) {
+  TerrainLook look;
+  look.materials = false;
+  look.overlay = {"moisture", 0, 1, ColourMap::sequential, 1};
+  look.second = {"vegetation", 0, 1, ColourMap::signal, 0.25f};
+  const std::map<std::string, Height> layers{{"elevation", level},
+                                             {"moisture", [](int, int) { return 0.0f; }},
+                                             {"vegetation", [](int, int) { return 1.0f; }}};
+  const Colour first = colour_of(ColourMap::sequential, 0), second = colour_of(ColourMap::signal, 1);
+  for (const PackedColour colour : row_of(block_with(layers, look)))
+    EXPECT_EQ(colour, pack(mix(first, second, 0.25f)));
+  look.second.opacity = 1;
+  look.divide = 0.25;
+  const std::vector<PackedColour> beside = row_of(block_with(layers, look));
+  for (std::size_t x = 0; x < beside.size(); ++x) EXPECT_EQ(beside[x], pack(x < 8 ? first : second)) << x;
+  const std::vector<std::string> needed = layers_for(look);
+  EXPECT_EQ(std::count(needed.begin(), needed.end(), "moisture"), 1);
+  EXPECT_EQ(std::count(needed.begin(), needed.end(), "vegetation"), 1);
+}
+
+TEST(Shading, IlluminationDarkensTheGroundAloneOrWithTheSun) {
+  const std::map<std::string, Height> layers{
+      {"elevation", [](int x, int) { return -0.3f * static_cast<float>(x); }},
+      {"illumination", [](int x, int) { return x == 5 ? unknown : 0.5f; }}};
+  TerrainLook look;
+  look.materials = look.shadows = false;
+  const std::vector<PackedColour> sunny = row_of(block_with(layers, look));
+  SurfaceMaterials sand;
+  sand.sand = 1;
+  const Colour bright = ground_colour(sand);
+  look.shading = Shading::illumination;
+  const std::vector<PackedColour> shaded = row_of(block_with(layers, look));
+  EXPECT_EQ(shaded[9], pack({0.5f * bright.r, 0.5f * bright.g, 0.5f * bright.b}));
+  EXPECT_EQ(shaded[5], pack(bright)) << "unknown light is as in the open";
+  look.shading = Shading::both;
+  const std::vector<PackedColour> both = row_of(block_with(layers, look));
+  EXPECT_EQ(both[5], sunny[5]);
+  EXPECT_NEAR(static_cast<float>(both[9] & 255), 0.5f * static_cast<float>(sunny[9] & 255), 1);
+  EXPECT_EQ(layers_for(look).back(), "illumination");
 }
 
 TEST(Overlay, RangesMayGoDown) {

@@ -55,6 +55,28 @@ class MicroRelief(unittest.TestCase):
         for at, height in narrow.items():
             self.assertEqual(height, wide[at], at)
 
+    def test_a_submap_with_a_resolution_is_the_local_map(self):
+        request = GetSubmapRequest()
+        request.length_x, request.length_y, request.resolution = 10, 4, 0.05
+        request.layers = ["elevation", "sand_depth"]
+        get_submap = service("desert_sim", "get_submap", GetSubmap)
+        answer = get_submap(request)
+        self.assertTrue(answer.success, answer.message)
+        fine, local = answer.map, local_map("desert_sim")
+        self.assertEqual((fine.width, fine.height, fine.cell_size), (200, 80, 0.05))
+        self.assertEqual((fine.origin.position.x, fine.origin.position.y), (-5, -2))
+        for layer in fine.layers:
+            for (x, y), value in cells(local, layer.name).items():
+                column, row = round((x + 5) / 0.05 - 0.5), round((y + 2) / 0.05 - 0.5)
+                self.assertEqual(layer.data[row * 200 + column], value, (layer.name, x, y))
+        for resolution, reason in ((2, "resolution: 2 m is neither 0 nor in [0.001, 1]"), (-1, "resolution: -1 m"),
+                                   (1e-4, "resolution: 0.0001 m"), (float("nan"), "resolution: nan m"),
+                                   (0.001, "region: 10000 x 4000")):
+            request.resolution = resolution
+            refused = get_submap(request)
+            self.assertFalse(refused.success)
+            self.assertIn(reason, refused.message)
+
     def test_without_a_resolution_the_map_has_the_terrains_cells(self):
         local = local_map("desert_plain")
         self.assertEqual(local.info.resolution, 1)

@@ -1,5 +1,7 @@
 /// The topics of a paused node on the scenario corner.yaml: what late joiners get, where cells lie, what it
 /// costs.
+#include <desert_sim/Appearance.h>
+#include <desert_sim/ApplySettings.h>
 #include <desert_sim/ElevationGrid.h>
 #include <desert_sim/ElevationUpdate.h>
 #include <desert_sim/SimulationStatus.h>
@@ -352,6 +354,25 @@ TEST(Topics, NobodyListensNothingIsCopied) {
     return updates.count() >= 3;
   })) << "updates flow without a subscriber to keyframes";
   EXPECT_GT(copied_for_a_step(statuses), 0u);
+}
+
+TEST(Topics, TheAppearanceIsTheScenariosAndFollowsItsSettings) {
+  Listener<Appearance> listener("appearance");
+  const Appearance first = listener.last();
+  EXPECT_FLOAT_EQ(first.sand.r, 0.855f);
+  EXPECT_FLOAT_EQ(first.deep_water.b, 0.471f);
+  EXPECT_EQ(first.sand.a, 1);
+  EXPECT_FALSE(first.wind_arrows);
+  const std::string before = step(1).state_hash;
+  ApplySettings::Request request;
+  request.settings = {"appearance.sand=[0.25, 0.5, 1]", "appearance.wind_arrows=true"};
+  const ApplySettings::Response applied = call<ApplySettings>("apply_settings", request);
+  EXPECT_TRUE(applied.success) << applied.message;
+  EXPECT_TRUE(wait_until([&] {
+    const Appearance now = listener.last();
+    return now.sand.r == 0.25f && now.sand.g == 0.5f && now.sand.b == 1 && now.wind_arrows;
+  }));
+  EXPECT_EQ(step(0).state_hash, before) << "the state does not know of it";
 }
 
 }  // namespace
