@@ -42,10 +42,10 @@ constexpr auto parameter_table(const MicroReliefParameters*) {
       parameter("crest_length", &P::crest_length, 0.4, 10, "m",
                 "Size of the patches in which crests are straight; they fork and end where patches meet."),
       parameter("bumps", &P::bumps,
-                "Whether there are heaps of sand at small plants and at the edges of obstacles."),
+                "Whether there are heaps of sand at plants and at the edges of obstacles."),
       parameter("bump_height", &P::bump_height, 0, 2, "m", "Height of the largest heap."),
       parameter("bump_radius", &P::bump_radius, 0.05, 5, "m",
-                "Radius of a heap; on a square of 2.5 radii there is one plant at most."),
+                "Radius of a heap; on a square of 2.5 radii there is one at most."),
       parameter("bump_lee", &P::bump_lee, 0, 1, "1", "Height of the heap in the lee over the windward one."));
 }
 static_assert(table_is_complete<MicroReliefParameters>());

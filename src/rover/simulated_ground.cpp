@@ -17,8 +17,8 @@ const GroundSource& SimulatedGround::at(std::uint64_t step) {
   if (!session_ || session_->simulation().state().steps > step)
     session_ = std::make_unique<Session>(scenario_, load_raster_, backend_, threads_);
   while (session_->simulation().state().steps < step) session_->step();
-  const auto snapshot =
-      session_->simulation().views().snapshot(GridGround::layers_of_snapshot(micro_relief_));
+  const auto snapshot = session_->simulation().views().snapshot(GridGround::layers_of_snapshot(micro_relief_),
+                                                                {}, micro_relief_);
   const ReposeParameters& repose = scenario_.get<ReposeParameters>();
   const double capacity = repose.moisture_capacity, depth = repose.moisture_depth;
   ground_ = micro_relief_ ? GridGround::with_micro_relief(*snapshot, capacity, depth)

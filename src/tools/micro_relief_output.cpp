@@ -57,7 +57,7 @@ std::vector<MicroReliefWindow> micro_relief_windows(const std::vector<std::strin
 
 std::vector<float> rippled_elevations(Simulation& simulation, const MicroReliefWindow& window) {
   const RowBand rows = MicroRelief::band(window, *simulation.views().snapshot({}));
-  return MicroRelief(*simulation.views().snapshot(MicroRelief::layers(), rows)).elevations(window);
+  return MicroRelief(*simulation.views().snapshot(MicroRelief::layers(), rows, true)).elevations(window);
 }
 
 void write_micro_relief([[maybe_unused]] const std::string& folder, [[maybe_unused]] Simulation& simulation,

@@ -41,7 +41,7 @@ class Node {
   }
 
   void take(FuzzedDataProvider& data) {
-    switch (data.ConsumeIntegralInRange(0, 6)) {
+    switch (data.ConsumeIntegralInRange(0, 7)) {
       case 0: {
         const auto m = fuzz::next_message<geometry_msgs::Twist>(data, words);
         return rover_.drive({m.linear.x, m.linear.y, m.angular.z}, 0.5);
@@ -63,6 +63,11 @@ class Node {
       }
       case 5:
         return load(data);
+      case 6: {
+        const auto m = fuzz::next_message<Plants>(data, words);
+        maps_.plants = std::make_shared<const MapPlants>(boost::make_shared<Plants>(m));
+        return;
+      }
       default: {
         const MapGround now = ground();
         rover_.advance(data.ConsumeFloatingPointInRange(0.0, 0.2), &now);

@@ -202,8 +202,9 @@ MapCut cut_terrain(SimulationThread& simulation, const std::vector<MapLayer>& la
 MicroReliefCut cut_micro_relief(SimulationThread& simulation, const std::vector<MapLayer>& layers,
                                 const std::string& what, const MapRegion& region, double resolution) {
   std::vector<Layer> needed = layers_of(layers);
-  if (std::count(needed.begin(), needed.end(), Layer::elevation) > 0)
-    needed.insert(needed.end(), MicroRelief::layers().begin(), MicroRelief::layers().end());
+  StateQuery query;
+  query.feet = std::count(needed.begin(), needed.end(), Layer::elevation) > 0;
+  if (query.feet) needed.insert(needed.end(), MicroRelief::layers().begin(), MicroRelief::layers().end());
   while (true) {
     const TerrainState whole = simulation.terrain({}).get();
     Snapshot squares = *whole.snapshot;
@@ -212,7 +213,8 @@ MicroReliefCut cut_micro_relief(SimulationThread& simulation, const std::vector<
     require_map_size(w, layers.size(), what);
     const MicroReliefWindow window{squares.origin_x + w.x0 * resolution, squares.origin_y + w.y0 * resolution,
                                    w.width, w.height, resolution};
-    MicroReliefCut cut{simulation.terrain(needed, MicroRelief::band(window, *whole.snapshot)).get(), window};
+    MicroReliefCut cut{simulation.terrain(needed, MicroRelief::band(window, *whole.snapshot), query).get(),
+                       window};
     if (cut.state.moment.terrain == whole.moment.terrain) return cut;  // else it was replaced in between
   }
 }

@@ -62,6 +62,7 @@ MicroReliefStatePtr micro_relief_message(const TerrainState& state, const std::s
   message->moisture_cutoff = s.micro_relief.moisture_cutoff;
   message->periodic_x = s.periodic_x;
   message->periodic_y = s.micro_relief.periodic_y;
+  message->plants_live = s.micro_relief.plants_live;
   return message;
 }
 
@@ -91,6 +92,7 @@ Snapshot snapshot_of(const MicroReliefState& m) {
   s.micro_relief.moisture_cutoff = m.moisture_cutoff;
   s.periodic_x = m.periodic_x;
   s.periodic_y = s.micro_relief.periodic_y = m.periodic_y;
+  s.micro_relief.plants_live = m.plants_live;
   return s;
 }
 

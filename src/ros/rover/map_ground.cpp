@@ -35,7 +35,8 @@ std::vector<std::string> TerrainMaps::names(unsigned uses, unsigned without) {
 bool TerrainMaps::complete(unsigned uses) const {
   for (std::size_t n = 0; n < count; ++n)
     if ((rows[n].uses & uses) && !maps[n]) return false;
-  return !(uses & MapUse::micro_relief) || micro_relief_settings;
+  if (!(uses & MapUse::micro_relief)) return true;
+  return micro_relief_settings && (plants || !micro_relief_settings->micro_relief.needs_feet());
 }
 
 void TerrainMaps::forget(unsigned uses, unsigned without) {
@@ -50,7 +51,8 @@ std::shared_ptr<const MapMicroRelief> TerrainMaps::micro_relief() const {
     if (!maps[n]->same_geometry(*maps[elevation])) return nullptr;
     layers[find_map_layer(rows[n].name)->layer] = maps[n];
   }
-  return std::make_shared<const MapMicroRelief>(std::move(layers), *micro_relief_settings);
+  if (plants && !plants->on_terrain_at(info().origin_x, info().origin_y)) return nullptr;
+  return std::make_shared<const MapMicroRelief>(std::move(layers), *micro_relief_settings, plants);
 }
 
 void TerrainMaps::set(std::size_t which, const MapChange& change) {

@@ -62,6 +62,7 @@ struct TerrainMaps {
   std::array<std::shared_ptr<const LayerMap>, count> maps;
   bool loose = false;                                     ///< whether a cell of the looseness is not 0
   std::shared_ptr<const Snapshot> micro_relief_settings;  ///< snapshot_of() the message of ~micro_relief
+  std::shared_ptr<const MapPlants> plants;                ///< of ~plants
 
   /// The names of the layers with one of these uses, and with none of those of `without`.
   static std::vector<std::string> names(unsigned uses, unsigned without = 0);

@@ -11,8 +11,8 @@ constexpr double reach = 4;
 
 }  // namespace
 
-MapMicroRelief::MapMicroRelief(Maps maps, Snapshot settings)
-    : maps_(std::move(maps)), settings_(std::move(settings)) {
+MapMicroRelief::MapMicroRelief(Maps maps, Snapshot settings, std::shared_ptr<const MapPlants> plants)
+    : maps_(std::move(maps)), plants_(std::move(plants)), settings_(std::move(settings)) {
   const MapInfo& info = maps_.at(Layer::elevation)->info();
   settings_.width = static_cast<int>(info.width);
   settings_.height = settings_.micro_relief.grid_height = static_cast<int>(info.height);
@@ -28,6 +28,8 @@ Snapshot MapMicroRelief::snapshot(const RowBand& band) const {
   s.origin_y += rows.first * s.cell_size;
   s.periodic_y = settings_.periodic_y && rows.count == settings_.height;
   s.micro_relief.first_row = rows.first;
+  if (s.micro_relief.needs_feet())
+    s.feet = plants_->feet(s.micro_relief.bump_squares(s.width, s.cell_size, s.periodic_x));
   for (const auto& [layer, map] : maps_) {
     std::vector<float>& values = s.layers[layer];
     values.reserve(static_cast<std::size_t>(s.width) * static_cast<std::size_t>(s.height));

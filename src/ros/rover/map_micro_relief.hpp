@@ -1,12 +1,13 @@
 #pragma once
 /// Ripples and bumps on the maps of a TerrainClient: MicroRelief of the layers and of what ~micro_relief
-/// says.
+/// and ~plants say.
 
 #include <map>
 #include <memory>
 #include <mutex>
 
 #include "include/desert_sim/client/layer_map.hpp"
+#include "src/ros/rover/map_plants.hpp"
 #include "src/rover/sensors/height_field_scene.hpp"
 #include "src/simulation/views/micro_relief.hpp"
 
@@ -17,7 +18,8 @@ class MapMicroRelief {
   using Maps = std::map<Layer, std::shared_ptr<const LayerMap>>;
 
   /// `maps` has the layers MicroRelief::layers(), of one geometry. `settings`: snapshot_of() a message.
-  MapMicroRelief(Maps maps, Snapshot settings);
+  /// `plants`: may be null if these settings need no feet.
+  MapMicroRelief(Maps maps, Snapshot settings, std::shared_ptr<const MapPlants> plants);
 
   /// Of the whole terrain.
   SceneGeometry geometry() const {
@@ -33,6 +35,7 @@ class MapMicroRelief {
   Snapshot snapshot(const RowBand& band) const;
 
   const Maps maps_;
+  const std::shared_ptr<const MapPlants> plants_;
   Snapshot settings_;  ///< with the whole grid, without layers
   mutable std::mutex mutex_;
   mutable std::unique_ptr<const MicroRelief> near_;  ///< of the rows around near_y_

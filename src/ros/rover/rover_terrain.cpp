@@ -36,6 +36,8 @@ RoverTerrain::RoverTerrain(const RoverNodeParameters& parameters, bool sensors,
   node.setCallbackQueue(&micro_relief_queue_);
   micro_relief_subscriber_ = node.subscribe(parameters.terrain_node + "/micro_relief", most_states,
                                             &RoverTerrain::receive_micro_relief, this);
+  plants_subscriber_ = node.subscribe(parameters.terrain_node + "/plants", lockstep_ ? most_states : 1,
+                                      &RoverTerrain::receive_plants, this);
   micro_relief_spinner_.emplace(1, &micro_relief_queue_);
   micro_relief_spinner_->start();
 }
@@ -82,6 +84,19 @@ void RoverTerrain::receive_micro_relief(const MicroReliefState::ConstPtr& messag
   collect(message->step, [&settings](TerrainMaps& state) { state.micro_relief_settings = settings; });
 }
 
+void RoverTerrain::receive_plants(const Plants::ConstPtr& message) {
+  std::shared_ptr<const MapPlants> plants;
+  try {
+    plants = std::make_shared<const MapPlants>(message);
+  } catch (const ConfigError& e) {
+    ROS_WARN_THROTTLE(5, "%s/plants: a message was refused: %s", parameters_.terrain_node.c_str(), e.what());
+    return;
+  }
+  const std::lock_guard<std::mutex> lock(mutex_);
+  newest_maps_.plants = plants;
+  collect(message->step, [&plants](TerrainMaps& state) { state.plants = plants; });
+}
+
 void RoverTerrain::collect(std::uint64_t step, const std::function<void(TerrainMaps&)>& put) {
   newest_.reset();
   if (!lockstep_) return;
@@ -107,6 +122,9 @@ void RoverTerrain::collect(std::uint64_t step, const std::function<void(TerrainM
 std::shared_ptr<const MapGround> RoverTerrain::ground_of(const TerrainMaps& maps) const {
   const bool use = parameters_.looseness == LoosenessSource::layer ||
                    (parameters_.looseness == LoosenessSource::automatic && maps.loose);
+  if (maps.complete(MapUse::micro_relief) && maps.micro_relief_settings->micro_relief.needs_feet())
+    if (const std::string shortage = maps.plants->shortage(); !shortage.empty())
+      ROS_WARN_ONCE("%s/plants: %s", parameters_.terrain_node.c_str(), shortage.c_str());
   return std::make_shared<const MapGround>(maps, parameters_.moisture_capacity, parameters_.moisture_depth,
                                            use);
 }

@@ -3,6 +3,7 @@
 /// with all layers of one step.
 
 #include <desert_sim/MicroReliefState.h>
+#include <desert_sim/Plants.h>
 #include <ros/callback_queue.h>
 #include <ros/node_handle.h>
 #include <ros/spinner.h>
@@ -48,6 +49,7 @@ class RoverTerrain {
  private:
   void receive(const MapChange& change);
   void receive_micro_relief(const MicroReliefState::ConstPtr& message);
+  void receive_plants(const Plants::ConstPtr& message);
   /// Puts into the state of a step what has come of it. The caller holds the mutex.
   void collect(std::uint64_t step, const std::function<void(TerrainMaps&)>& put);
   std::shared_ptr<const MapGround> ground_of(const TerrainMaps& maps) const;
@@ -68,7 +70,7 @@ class RoverTerrain {
   // Last, because they call what receives:
   std::unique_ptr<TerrainClient> client_;
   ros::CallbackQueue micro_relief_queue_;
-  ros::Subscriber micro_relief_subscriber_;
+  ros::Subscriber micro_relief_subscriber_, plants_subscriber_;
   std::optional<ros::AsyncSpinner> micro_relief_spinner_;
 };
 

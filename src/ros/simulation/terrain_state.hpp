@@ -31,6 +31,7 @@ struct StateQuery {
   HeldQueries held;
   CostQuery costs;
   bool plants = false;     ///< all plants, one by one
+  bool feet = false;       ///< in the snapshot, as far as MicroRelief needs them
   int particle_paths = 0;  ///< at most so many
 };
 

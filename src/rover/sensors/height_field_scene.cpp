@@ -124,6 +124,14 @@ void HeightFieldScene::set_micro_relief(const Snapshot& s) {
     exec_.upload(buffer.data(), relief.cells.*layer, buffer.bytes());
     relief.cells.*layer = buffer.data();
   }
+  if (relief.bumps.feet.live) {
+    if (feet_ != s.feet) {
+      if (feet_numbers_.size() != s.feet->widest.size()) feet_numbers_ = {exec_, s.feet->widest.size()};
+      feet_numbers_.upload(s.feet->widest);
+      feet_ = s.feet;
+    }
+    relief.bumps.feet.widest = feet_numbers_.data();
+  }
   micro_relief_ = relief;
 }
 

@@ -45,8 +45,8 @@ class HeightFieldScene {
   void update(SceneLayer layer, const std::vector<float>& values);
 
   /// Puts ripples and bumps on the ground until the next call: those of a snapshot of all rows with
-  /// MicroRelief::layers(). The elevation that beams meet is still that of update(). Throws ConfigError if
-  /// the snapshot has another grid.
+  /// MicroRelief::layers() and feet. The elevation that beams meet is still that of update(). Throws
+  /// ConfigError if the snapshot has another grid.
   void set_micro_relief(const Snapshot& snapshot);
   void clear_micro_relief() { micro_relief_.reset(); }
   const std::optional<micro_relief::Relief>& micro_relief() const { return micro_relief_; }
@@ -66,6 +66,8 @@ class HeightFieldScene {
   Buffer<float> canopy_, density_;                    ///< empty while there are no plants
   Buffer<float> airborne_sand_, dust_, dust_ground_;  ///< empty while no sand is in the air
   std::vector<Buffer<float>> micro_relief_cells_;     ///< what micro_relief_ points to
+  std::shared_ptr<const PlantFeet> feet_;             ///< those in feet_numbers_
+  Buffer<micro_relief::FootNumber> feet_numbers_;
   std::optional<micro_relief::Relief> micro_relief_;
   Buffer<float> staging_;  ///< values on their way to the device
 };

@@ -22,15 +22,13 @@ using micro_relief::SquareTable;
 
 namespace {
 
-constexpr float drowned = 0.002f;   ///< depth of water under which nothing is left of ripples [m]
-constexpr double bump_pitch = 2.5;  ///< side of a square with one plant, over the radius of a bump
+constexpr float drowned = 0.002f;  ///< depth of water under which nothing is left of ripples [m]
 
-Relief relief_of(const MicroReliefSettings& s, const Cells& cells, double length_x, double length_y) {
-  const auto lattice = [&](double pitch) {
-    return Lattice(length_x, length_y, pitch, cells.x.periodic, cells.y.periodic);
-  };
-  return {cells, Ripples(s.parameters, s.wind, s.seed, lattice(double{s.parameters.crest_length})),
-          Bumps(s.parameters, s.seed, lattice(bump_pitch * double{s.parameters.bump_radius}))};
+Relief relief_of(const MicroReliefSettings& s, const Cells& cells, double cell_size) {
+  const Lattice patches(cells.x.count * cell_size, cells.y.count * cell_size,
+                        double{s.parameters.crest_length}, cells.x.periodic, cells.y.periodic);
+  return {cells, Ripples(s.parameters, s.wind, s.seed, patches),
+          Bumps(s.parameters, s.seed, s.bump_squares(cells.x.count, cell_size, cells.x.periodic))};
 }
 
 }  // namespace
@@ -45,7 +43,7 @@ const std::vector<Layer>& MicroRelief::layers() {
 int MicroRelief::margin(const MicroReliefParameters& p, double cell_size) {
   // Things reach 1¼ sides of a square, which may be a sixth longer than asked for. They take values of the
   // cells around their place, and the slope of a cell is that between its neighbours.
-  const double pitch = std::max(double{p.crest_length}, bump_pitch * double{p.bump_radius});
+  const double pitch = std::max(double{p.crest_length}, Bumps::pitch * double{p.bump_radius});
   return static_cast<int>(std::ceil(1.5 * pitch / cell_size)) + 3;
 }
 
@@ -72,7 +70,8 @@ MicroRelief::MicroRelief(const Snapshot& s)
       rows_(s.height),
       relief_(relief_of(s.micro_relief,
                         {{width_, 1 / s.cell_size, periodic_x_}, {height_, 1 / s.cell_size, periodic_y_}},
-                        width_ * s.cell_size, height_ * s.cell_size)) {
+                        s.cell_size)) {
+  take_feet(s);
   fill_cells(s);
   Cells& c = relief_.cells;
   c.first_row = first_row_;
@@ -84,6 +83,14 @@ MicroRelief::MicroRelief(const Snapshot& s)
   c.stones = stones_.data();
   c.turn_x = turn_x_.data();
   c.turn_y = turn_y_.data();
+}
+
+void MicroRelief::take_feet(const Snapshot& s) {
+  if (!settings_.needs_feet()) return;
+  if (!s.feet) throw ConfigError("micro_relief of the surface: the snapshot lacks the feet of plants");
+  feet_ = s.feet;
+  relief_.bumps.feet = {feet_->widest.data(), true, relief_.bumps.lattice.x.count, feet_->first_row,
+                        feet_->rows};
 }
 
 void MicroRelief::fill_cells(const Snapshot& s) {
@@ -108,7 +115,10 @@ void MicroRelief::fill_cells(const Snapshot& s) {
   const auto is_zero = [](const std::vector<float>& values) {
     return std::all_of(values.begin(), values.end(), [](float v) { return v == 0; });
   };
-  if (is_zero(growth_) && is_zero(stones_)) relief_.bumps.height = 0;  // it saves looking for them
+  const bool bare = relief_.bumps.feet.live ? std::all_of(feet_->widest.begin(), feet_->widest.end(),
+                                                          [](auto n) { return n == 0; })
+                                            : is_zero(growth_);
+  if (bare && is_zero(stones_)) relief_.bumps.height = 0;  // it saves looking for them
   // Some models move sand without a layer of the wind.
   const bool wind_is_known = std::abs(above) > 1e-3f && !(is_zero(wind_x) && is_zero(wind_y));
   const float steep = settings_.repose_tangent;

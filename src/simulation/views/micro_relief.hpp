@@ -5,6 +5,7 @@
 /// for.
 
 #include <cstddef>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -37,7 +38,8 @@ class MicroRelief {
   /// The rows of a terrain that a snapshot for a window must have. `grid`: any snapshot of it.
   static RowBand band(const MicroReliefWindow& window, const Snapshot& grid);
 
-  /// Of a snapshot of all rows, or of a band with its margin. Throws ConfigError if it lacks the elevation.
+  /// Of a snapshot of all rows, or of a band with its margin, with feet (Views::begin_snapshot()). Throws
+  /// ConfigError if it lacks the elevation, or feet that it needs.
   explicit MicroRelief(const Snapshot& snapshot);
   MicroRelief(const MicroRelief&) = delete;
   MicroRelief& operator=(const MicroRelief&) = delete;
@@ -51,6 +53,7 @@ class MicroRelief {
   std::vector<float> elevations(const MicroReliefWindow& window) const;
 
  private:
+  void take_feet(const Snapshot& snapshot);
   void fill_cells(const Snapshot& snapshot);
   bool contains(double x, double y) const;
   /// Of the bilinear surface, at metres from the south-west corner of the terrain.
@@ -62,6 +65,7 @@ class MicroRelief {
   const bool periodic_x_, periodic_y_;
   const int first_row_, rows_;
   std::vector<float> elevation_, sand_, mobile_, level_, growth_, stones_, turn_x_, turn_y_;
+  std::shared_ptr<const PlantFeet> feet_;  ///< null: it needs none
   micro_relief::Relief relief_;
 };
 

@@ -1,6 +1,7 @@
 #include "src/simulation/views/snapshot.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "kernels/field/surface.hpp"
 #include "kernels/plants/marking.hpp"
@@ -64,7 +65,8 @@ std::shared_ptr<Snapshot> Views::make_empty_snapshot(const std::vector<Layer>& l
                      g.height,
                      rows.first,
                      g.origin_y,
-                     grid.periodic_y};
+                     grid.periodic_y,
+                     static_cast<bool>(state_.plants)};
   for (const Species& species : state_.scenario.species) {
     const render::Colour crown = render::crown_colour(species.appearance.hue);
     s->crown_colours.push_back({crown.r, crown.g, crown.b});
@@ -76,12 +78,13 @@ std::shared_ptr<Snapshot> Views::make_empty_snapshot(const std::vector<Layer>& l
   return s;
 }
 
-PendingSnapshot Views::begin_snapshot(const std::vector<Layer>& layers, const RowBand& band) {
+PendingSnapshot Views::begin_snapshot(const std::vector<Layer>& layers, const RowBand& band, bool feet) {
   const Grid& grid = state_.terrain.grid();
   const RowBand rows = clamp_band(band, grid.height, grid.periodic_y);
   const std::shared_ptr<Snapshot> snapshot = make_empty_snapshot(layers, rows);
   update_layers(layers, rows);
   auto readback = std::make_shared<Readback>();
+  if (feet && snapshot->micro_relief.needs_feet()) send_feet(*snapshot, rows, readback);
   if (layers.empty()) return {snapshot, readback};
   const std::size_t row_bytes =
       snapshot->layers.size() * static_cast<std::size_t>(snapshot->width) * sizeof(float);
@@ -118,6 +121,52 @@ void Views::send_rows(const std::shared_ptr<Snapshot>& snapshot, const RowBand& 
       from += cells;
     }
   });
+}
+
+namespace {
+
+/// The rows of squares in which a band of a terrain's rows lies.
+RowBand rows_of_squares(const micro_relief::Axis& squares, const RowBand& band, double cell_size) {
+  const auto row = [&](int cell) {
+    return static_cast<int>(std::floor(cell * cell_size * squares.parts_per_metre));
+  };
+  const int first = row(band.first);
+  return clamp_band({first, row(band.first + band.count) + 1 - first}, squares.count, squares.periodic);
+}
+
+}  // namespace
+
+void Views::send_feet(Snapshot& snapshot, const RowBand& rows, const std::shared_ptr<Readback>& readback) {
+  using micro_relief::FootNumber;
+  const micro_relief::Lattice squares =
+      snapshot.micro_relief.bump_squares(snapshot.width, snapshot.cell_size, snapshot.periodic_x);
+  const RowBand all = rows_of_squares(squares.y, rows, snapshot.cell_size);
+  const auto feet = std::make_shared<PlantFeet>();
+  feet->first_row = squares.row_anywhere(all.first);
+  feet->rows = all.count;
+  snapshot.feet = feet;
+  const plants::View& view = state_.plants.plants();
+  const micro_relief::Plants plants{view.x, view.y, view.radius, state_.plants.count};
+  const std::size_t row_numbers = static_cast<std::size_t>(squares.x.count);
+  const int most = static_cast<int>(std::clamp<std::size_t>(
+      staging_.slot_bytes() / (row_numbers * sizeof(FootNumber)), 1, static_cast<std::size_t>(all.count)));
+  for (int row = 0; row < all.count; row += most) {
+    const int count = std::min(most, all.count - row);
+    const std::size_t numbers = row_numbers * static_cast<std::size_t>(count),
+                      bytes = numbers * sizeof(FootNumber);
+    Staging::Slot& slot = staging_.acquire(bytes);
+    with_backend(state_.exec(), [&](auto& e) {
+      micro_relief::find_feet(e, squares, plants, squares.row_anywhere(all.first + row), count,
+                              reinterpret_cast<FootNumber*>(slot.device()));
+    });
+    staging_.send(slot, bytes, readback,
+                  [waited = std::weak_ptr<PlantFeet>(feet), bytes, numbers](auto& arrived) {
+                    const std::shared_ptr<PlantFeet> found = waited.lock();
+                    if (!found) return;
+                    const auto* from = reinterpret_cast<const FootNumber*>(arrived.host(bytes));
+                    found->widest.insert(found->widest.end(), from, from + numbers);
+                  });
+  }
 }
 
 PendingPlants Views::begin_plants() {

@@ -4,10 +4,11 @@
 #include <array>
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <vector>
 
 #include "kernels/field/layers.hpp"
-#include "kernels/micro_relief/ripple_size.hpp"
+#include "kernels/micro_relief/bumps.hpp"
 #include "kernels/particles/wang.hpp"
 #include "kernels/plants/marking.hpp"
 #include "kernels/wind/wind.hpp"
@@ -39,6 +40,22 @@ struct MicroReliefSettings {
   int grid_height = 0, first_row = 0;  ///< [cells]; the snapshot's row 0 is that row
   double origin_y = 0;                 ///< [m]
   bool periodic_y = true;
+  bool plants_live = false;  ///< else the density of the layer says where they stand
+
+  /// Whether heaps depend on the plants one by one.
+  bool needs_feet() const { return plants_live && parameters.bumps; }
+  /// The lattice of bumps on a terrain of so many columns, with cells of this size [m].
+  micro_relief::Lattice bump_squares(int width, double cell_size, bool periodic_x) const {
+    return micro_relief::Bumps::squares(parameters, width * cell_size, grid_height * cell_size, periodic_x,
+                                        periodic_y);
+  }
+};
+
+/// The widest plants of the squares of MicroReliefSettings::bump_squares(), from row `first_row` of these on
+/// (kernels/micro_relief/plant_feet.hpp).
+struct PlantFeet {
+  int first_row = 0, rows = 0;
+  std::vector<micro_relief::FootNumber> widest;
 };
 
 /// Layers at one moment, converted to floats in the layer's unit. Immutable once made; outlives the
@@ -56,6 +73,7 @@ struct Snapshot {
   render::Palette palette;                          ///< of everything else
   bool wind_arrows = false;                         ///< the scenario wants its wind to be seen
   std::map<Layer, std::vector<float>> layers;
+  std::shared_ptr<const PlantFeet> feet;  ///< null unless they were asked for, and micro_relief needs them
   const std::vector<float>* find(Layer layer) const;  ///< null if it was not asked for
 };
 

@@ -22,10 +22,12 @@ class Views {
   /// Elevation and wind are brought up to date first, and layers that exist on request computed, if they are
   /// asked for; what was never asked for takes no memory. Of a band of rows only those are copied and
   /// computed: the snapshot's height and origin are the band's, less what lies off an open terrain (at least
-  /// one row is left).
-  PendingSnapshot begin_snapshot(const std::vector<Layer>& layers, const RowBand& band = {});
-  std::shared_ptr<const Snapshot> snapshot(const std::vector<Layer>& layers, const RowBand& band = {}) {
-    return begin_snapshot(layers, band).get();
+  /// one row is left). `feet`: with the plants of the squares of the band, as far as MicroRelief needs them.
+  PendingSnapshot begin_snapshot(const std::vector<Layer>& layers, const RowBand& band = {},
+                                 bool feet = false);
+  std::shared_ptr<const Snapshot> snapshot(const std::vector<Layer>& layers, const RowBand& band = {},
+                                           bool feet = false) {
+    return begin_snapshot(layers, band, feet).get();
   }
   /// Starts a copy of all plants to the host, in the order of their look-up.
   PendingPlants begin_plants();
@@ -64,6 +66,8 @@ class Views {
   /// Starts the copy of some rows of the snapshot's layers, which are appended to what it has.
   void send_rows(const std::shared_ptr<Snapshot>& snapshot, const RowBand& rows,
                  const std::shared_ptr<Readback>& readback);
+  /// Starts the copy of the snapshot's feet of plants.
+  void send_feet(Snapshot& snapshot, const RowBand& rows, const std::shared_ptr<Readback>& readback);
 
   void hold(Layer layer);
   Pending<LayerChanges> send_changes(Layer layer, const HeldQuery& query);

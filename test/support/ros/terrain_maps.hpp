@@ -31,6 +31,21 @@ inline std::shared_ptr<const desert_sim::LayerMap> map_of(const desert_sim::Snap
   return std::make_shared<const desert_sim::LayerMap>(keyframe, nullptr, changed);
 }
 
+/// The plants of a state as ~plants sends all of them.
+inline boost::shared_ptr<desert_sim::Plants> plants_message_of(const desert_sim::PlantList& list) {
+  const auto message = boost::make_shared<desert_sim::Plants>();
+  message->step = list.step;
+  message->origin.position.x = list.origin_x;
+  message->origin.position.y = list.origin_y;
+  message->total = list.plants.size();
+  for (const desert_sim::plants::PlantRecord& plant : list.plants) {
+    message->x.push_back(plant.x);
+    message->y.push_back(plant.y);
+    message->radius.push_back(plant.radius);
+  }
+  return message;
+}
+
 /// All that a rover knows of a state.
 inline desert_sim::TerrainMaps maps_of(const desert_sim::TerrainState& state) {
   desert_sim::TerrainMaps maps;
@@ -38,6 +53,8 @@ inline desert_sim::TerrainMaps maps_of(const desert_sim::TerrainState& state) {
     maps.maps[n] = map_of(*state.snapshot, desert_sim::TerrainMaps::rows[n].name);
   maps.micro_relief_settings = std::make_shared<const desert_sim::Snapshot>(
       desert_sim::snapshot_of(*desert_sim::micro_relief_message(state, "map")));
+  if (state.plants)
+    maps.plants = std::make_shared<const desert_sim::MapPlants>(plants_message_of(*state.plants));
   return maps;
 }
 

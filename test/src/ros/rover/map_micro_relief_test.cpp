@@ -26,8 +26,16 @@ using node_test::maps_of;
 
 constexpr double capacity = 0.3, deepest = 0.5;
 
+const std::string plants_of_a_layer =
+    ", column: {layer: vegetation, x: 6, y: 36, size_x: 8, size_y: 8, height: 0.8}]";
+const std::string live_plants =
+    ", uniform: {layer: sand, value: 2}], run: {timeline: [{time: 1, command: edit_plants, species: bush, "
+    "x: 3, y: 26, radius: 14, density: 0.3, size: 0.3}]}, vegetation: {enabled: true}, species: [{preset: "
+    "bush, sand: 1, water_use: 0, moisture_lowest: 0, light_lowest: -10, light_highest: 10, root_cover: 0, "
+    "stem_cover: 1, slope: 9, spawn: 0}]";
+
 /// Dunes with a pond, a block and plants, after winds of two directions.
-TerrainState dunes(const std::string& boundary) {
+TerrainState dunes(const std::string& boundary, const std::string& plants = plants_of_a_layer) {
   const std::unique_ptr<Exec> exec = make_exec("cpu", 1);
   const auto world = test::simulate(
       *exec,
@@ -40,11 +48,12 @@ TerrainState dunes(const std::string& boundary) {
           "{layer: "
           "sand, low: 0.2, high: 1.5, "
           "scale: 6}, column: {layer: obstacle, x: 2, y: 20, size_x: 2, size_y: 2, height: 1}, column: "
-          "{layer: moisture, x: -6, y: 30, size_x: 6, size_y: 6, height: 0.05}, column: {layer: "
-          "vegetation, x: 6, y: 36, size_x: 8, size_y: 8, height: 0.8}]}");
+          "{layer: moisture, x: -6, y: 30, size_x: 6, size_y: 6, height: 0.05}" +
+          plants + "}");
   test::run(*world, 8);
   TerrainState state;
-  state.snapshot = world->views().snapshot(GridGround::layers_of_snapshot(true));
+  state.snapshot = world->views().snapshot(GridGround::layers_of_snapshot(true), {}, true);
+  state.plants = world->views().begin_plants().get();
   return state;
 }
 
@@ -58,9 +67,9 @@ TEST(MapMicroRelief, TheLayersAreThoseOfMicroRelief) {
   EXPECT_EQ(layers, expected);
 }
 
-TEST(MapMicroRelief, WheelsHaveTheSimulationsSurfaceToTheBit) {
+void expect_the_surface_to_the_bit(const std::string& plants) {
   for (const char* boundary : {"open", "periodic"}) {
-    const TerrainState state = dunes(boundary);
+    const TerrainState state = dunes(boundary, plants);
     const Snapshot& s = *state.snapshot;
     const MapGround ground(maps_of(state), capacity, deepest, false);
     const auto expected = GridGround::with_micro_relief(s, capacity);
@@ -87,6 +96,54 @@ TEST(MapMicroRelief, WheelsHaveTheSimulationsSurfaceToTheBit) {
   }
 }
 
+TEST(MapMicroRelief, WheelsHaveTheSimulationsSurfaceToTheBit) {
+  expect_the_surface_to_the_bit(plants_of_a_layer);
+}
+
+TEST(MapMicroRelief, WheelsHaveTheSimulationsHeapsAtLivePlantsToTheBit) {
+  const TerrainState state = dunes("open", live_plants);
+  Snapshot elsewhere = *state.snapshot;
+  elsewhere.micro_relief.plants_live = false;
+  const MicroRelief with(*state.snapshot), without(elsewhere);
+  ASSERT_GT(state.plants->plants.size(), 100u);
+  int other = 0;
+  for (const plants::PlantRecord& plant : state.plants->plants) {
+    const double x = -12 + double{plant.x}, y = 5 + double{plant.y};
+    other += std::abs(with.offset(x, y) - without.offset(x, y)) > 0.005;
+  }
+  EXPECT_GT(other, 50) << "heaps are elsewhere if the layer places them";
+  expect_the_surface_to_the_bit(live_plants);
+}
+
+TEST(MapMicroRelief, PlantsThatAreMissingAreTold) {
+  const TerrainState state = dunes("open", live_plants);
+  const auto message = node_test::plants_message_of(*state.plants);
+  EXPECT_EQ(MapPlants(message).shortage(), "");
+  const std::size_t all = message->x.size();
+  const auto few = boost::make_shared<Plants>(*message);
+  for (auto* column : {&few->x, &few->y, &few->radius}) column->resize(7);
+  const std::string shortage = MapPlants(few).shortage();
+  EXPECT_NE(shortage.find("only the widest 7 of " + std::to_string(all) + " plants"), std::string::npos)
+      << shortage;
+  EXPECT_NE(shortage.find("Set plants_count of the terrain's node to at least " + std::to_string(all)),
+            std::string::npos)
+      << shortage;
+  few->radius.resize(6);
+  EXPECT_NE(test::refusal([&] { MapPlants{few}; }).find("7, 7 and 6 values"), std::string::npos);
+}
+
+TEST(MapMicroRelief, FeetOfATerrainAreFoundOnceAndForOtherSquaresAnew) {
+  const TerrainState state = dunes("open", live_plants);
+  const MapPlants plants(node_test::plants_message_of(*state.plants));
+  const MicroReliefSettings& settings = state.snapshot->micro_relief;
+  const auto feet = plants.feet(settings.bump_squares(40, 0.75, false));
+  EXPECT_EQ(feet->widest, state.snapshot->feet->widest);
+  EXPECT_EQ(plants.feet(settings.bump_squares(40, 0.75, false)), feet);
+  MicroReliefSettings finer = settings;
+  finer.parameters.bump_radius = 0.2f;
+  EXPECT_EQ(plants.feet(finer.bump_squares(40, 0.75, false))->widest.size(), 60u * 84u);
+}
+
 // Without lockstep, maps may be off by their thresholds. In thin sand and water that can be all of a ripple.
 TEST(MapMicroRelief, MapsWithinTheirThresholdsGiveNearlyTheSameRipples) {
   const TerrainState state = dunes("open");
@@ -107,28 +164,35 @@ TEST(MapMicroRelief, MapsWithinTheirThresholdsGiveNearlyTheSameRipples) {
 }
 
 TEST(MapMicroRelief, BeamsHaveThem) {
-  const TerrainState state = dunes("periodic");
-  const Snapshot &s = *state.snapshot,
-                 made = MapGround(maps_of(state), capacity, deepest, false).micro_relief()->snapshot();
-  const MicroRelief expected(s), micro_relief(made);
-  const MicroReliefWindow window{-13, 4, 400, 600, 0.08};
-  EXPECT_EQ(0, std::memcmp(micro_relief.elevations(window).data(), expected.elevations(window).data(),
-                           window.points() * sizeof(float)));
-  const std::unique_ptr<Exec> exec = make_exec("cpu", 1);
-  HeightFieldScene scene(*exec, {s.width, s.height, s.cell_size, s.origin_x, s.origin_y});
-  EXPECT_NO_THROW(scene.set_micro_relief(made));
+  for (const std::string& plants : {plants_of_a_layer, live_plants}) {
+    const TerrainState state = dunes("periodic", plants);
+    const Snapshot &s = *state.snapshot,
+                   made = MapGround(maps_of(state), capacity, deepest, false).micro_relief()->snapshot();
+    const MicroRelief expected(s), micro_relief(made);
+    const MicroReliefWindow window{-13, 4, 400, 600, 0.08};
+    EXPECT_EQ(0, std::memcmp(micro_relief.elevations(window).data(), expected.elevations(window).data(),
+                             window.points() * sizeof(float)));
+    const std::unique_ptr<Exec> exec = make_exec("cpu", 1);
+    HeightFieldScene scene(*exec, {s.width, s.height, s.cell_size, s.origin_x, s.origin_y});
+    EXPECT_NO_THROW(scene.set_micro_relief(made));
+  }
 }
 
 TEST(MapMicroRelief, WithoutAllThatItNeedsTheGroundIsBilinear) {
   const TerrainState state = dunes("open");
   const GridGround bilinear(*state.snapshot, capacity, deepest);
-  std::vector<TerrainMaps> lacking(3, maps_of(state));
+  std::vector<TerrainMaps> lacking(4, maps_of(state));
   lacking[0].micro_relief_settings = nullptr;
   lacking[1].forget(MapUse::micro_relief, MapUse::ground);
   Snapshot smaller = *state.snapshot;
   smaller.height -= 1;
   smaller.layers.clear();
   lacking[2].maps[TerrainMaps::wind_x] = map_of(smaller, "wind_x");
+  Snapshot live = *lacking[3].micro_relief_settings;
+  live.micro_relief.plants_live = true;
+  lacking[3].micro_relief_settings = std::make_shared<const Snapshot>(live);
+  lacking[3].plants = nullptr;
+  EXPECT_FALSE(lacking[3].complete(MapUse::micro_relief));
   EXPECT_TRUE(maps_of(state).complete(MapUse::ground | MapUse::micro_relief));
   EXPECT_FALSE(lacking[0].complete(MapUse::micro_relief) || lacking[1].complete(MapUse::micro_relief));
   for (const TerrainMaps& maps : lacking) {

@@ -1,5 +1,5 @@
-/// A rover that was asked for micro-relief: its wheels and its lidar meet the ripples of the simulation at
-/// the same step, to the bit for wheels, and a rover that was not asked has none.
+/// A rover that was asked for micro-relief: its wheels and its lidar meet the ripples of the simulation, and
+/// its heaps at live bushes, at the same step, to the bit for wheels; a rover that was not asked has none.
 #include <desert_sim/MicroReliefState.h>
 #include <sensor_msgs/PointCloud2.h>
 #include <sensor_msgs/point_cloud2_iterator.h>
@@ -26,8 +26,9 @@ using node_test::step;
 const std::string rippled = "/rippled", smooth = "/other/smooth";
 constexpr int steps = 8;
 
-desert_sim::SimulatedGround ground_of_scenario(bool micro_relief) {
-  return {desert_sim::load_scenario(DESERT_SOURCE_DIR "/test/support/ros/scenarios/rippled.yaml"),
+desert_sim::SimulatedGround ground_of_scenario(bool micro_relief,
+                                               const std::string& name = "rippled_bushes") {
+  return {desert_sim::load_scenario(DESERT_SOURCE_DIR "/test/support/ros/scenarios/" + name + ".yaml"),
           desert_sim::no_raster_loader, "cpu", 1, micro_relief};
 }
 
@@ -61,13 +62,14 @@ TEST(RoverMicroRelief, WheelsDriveOnTheRipplesOfTheSimulation) {
   ASSERT_TRUE(ros::param::get("/rover_micro_relief/journal", file));
   desert_sim::RoverJournal journal = desert_sim::read_rover_journal(file);
   EXPECT_TRUE(journal.micro_relief);
-  const auto end_on = [&journal](bool micro_relief) {
-    desert_sim::SimulatedGround ground = ground_of_scenario(micro_relief);
+  const auto end_on = [&journal](bool micro_relief, const std::string& name = "rippled_bushes") {
+    desert_sim::SimulatedGround ground = ground_of_scenario(micro_relief, name);
     return desert_sim::hash_text(desert_sim::hash_of(desert_sim::replay(
         journal, [&ground](std::uint64_t at) -> const desert_sim::GroundSource& { return ground.at(at); })));
   };
   EXPECT_EQ(end_on(true), with);
   EXPECT_NE(end_on(false), with);
+  EXPECT_NE(end_on(true, "rippled"), with) << "heaps at bushes are in its way";
 }
 
 TEST(RoverMicroRelief, RoversInRosTimeStandOnThem) {

@@ -1,5 +1,8 @@
 // Beams on rippled sand meet the surface that maps and wheels have, on both backends to the bit.
 
+#include <algorithm>
+#include <cstring>
+
 #include "test/support/scenes.hpp"
 #include "test/support/world.hpp"
 
@@ -22,6 +25,21 @@ Snapshot rippled(Exec& exec, const std::string& more = "") {
   return s;
 }
 
+/// The same, with live plants on a third of the squares of the lattice of bumps.
+Snapshot with_live_plants(Snapshot s) {
+  const micro_relief::Lattice squares = s.micro_relief.bump_squares(s.width, s.cell_size, s.periodic_x);
+  const auto feet = std::make_shared<PlantFeet>();
+  feet->rows = squares.y.count;
+  for (int n = 0; n < squares.x.count * squares.y.count; ++n) {
+    const auto share = [n](int step) { return static_cast<float>(n * step % 64) / 64; };
+    feet->widest.push_back(
+        n % 3 ? 0 : micro_relief::Foot::number({0, 0, share(23), share(37)}, 0.2f + share(11)));
+  }
+  s.feet = feet;
+  s.micro_relief.plants_live = true;
+  return s;
+}
+
 struct Scene {
   Scene(Exec& exec, const Snapshot& s)
       : scene(exec, {s.width, s.height, s.cell_size, s.origin_x, s.origin_y}) {
@@ -37,11 +55,10 @@ double surface(const MicroRelief& micro_relief, double x, double y) {
 
 class BeamsOnRipples : public test::OnBackend {};
 
-TEST_P(BeamsOnRipples, TheyEndOnTheSurfaceOfTheMaps) {
-  const Snapshot s = rippled(exec());
+void expect_beams_to_end_on_the_surface(Exec& exec, const Snapshot& s, double highest) {
   const MicroRelief micro_relief(s);
-  const Scene known(exec(), s);
-  Lidar lidar(exec(), test::exact_lidar(24, 60, -85, -4), {});
+  const Scene known(exec, s);
+  Lidar lidar(exec, test::exact_lidar(24, 60, -85, -4), {});
   for (const double y : {2.0, 12.0}) {
     const SensorPose pose{{116, y, 1.6}};
     const RangeImage image = lidar.scan(known.scene, pose, 0);
@@ -57,8 +74,31 @@ TEST_P(BeamsOnRipples, TheyEndOnTheSurfaceOfTheMaps) {
     }
     EXPECT_GT(returns, 1000);
     EXPECT_EQ(off, 0);
-    EXPECT_GT(largest, 0.4 * ripple_height);
+    EXPECT_GT(largest, highest);
   }
+}
+
+TEST_P(BeamsOnRipples, TheyEndOnTheSurfaceOfTheMaps) {
+  expect_beams_to_end_on_the_surface(exec(), rippled(exec()), 0.4 * ripple_height);
+}
+
+TEST_P(BeamsOnRipples, TheyEndOnHeapsAtLivePlants) {
+  const Snapshot s = rippled(exec());
+  expect_beams_to_end_on_the_surface(exec(), with_live_plants(s), 0.07);
+  Scene known(exec(), with_live_plants(s));
+  Lidar lidar(exec(), test::exact_lidar(12, 60, -60, -5), {});
+  const SensorPose pose{{116, 4, 1.6}};
+  const std::vector<float> first = lidar.scan(known.scene, pose, 0).distances;
+  Snapshot moved = with_live_plants(s);
+  PlantFeet feet = *moved.feet;
+  std::rotate(feet.widest.begin(), feet.widest.begin() + 1, feet.widest.end());
+  moved.feet = std::make_shared<const PlantFeet>(feet);
+  known.scene.set_micro_relief(moved);
+  const std::vector<float> second = lidar.scan(known.scene, pose, 0).distances;
+  EXPECT_NE(second, first) << "heaps move with their plants";
+  known.scene.set_micro_relief(with_live_plants(s));
+  EXPECT_EQ(0, std::memcmp(lidar.scan(known.scene, pose, 0).distances.data(), first.data(),
+                           first.size() * sizeof(float)));
 }
 
 TEST_P(BeamsOnRipples, NoBeamPassesThroughACrest) {
@@ -107,15 +147,16 @@ DESERT_ON_EACH_BACKEND(BeamsOnRipples);
 class RippledParity : public test::OnBoth {};
 
 TEST_F(RippledParity, ScansHaveTheSameBits) {
-  const Snapshot s = rippled(cpu());
-  const Scene here(cpu(), s), there(cuda(), s);
-  LidarParameters p = test::exact_lidar(32, 400, -60, -2);
-  Lidar first(cpu(), p, {}), second(cuda(), p, {});
-  const RangeImage a = first.scan(here.scene, {{116, 12, 1.6}}, 0),
-                   b = second.scan(there.scene, {{116, 12, 1.6}}, 0);
-  for (std::size_t n = 0; n < a.distances.size(); ++n) {
-    ASSERT_EQ(bits_of(a.distances[n]), bits_of(b.distances[n])) << n;
-    ASSERT_EQ(bits_of(a.intensities[n]), bits_of(b.intensities[n])) << n;
+  for (const Snapshot& s : {rippled(cpu()), with_live_plants(rippled(cpu()))}) {
+    const Scene here(cpu(), s), there(cuda(), s);
+    LidarParameters p = test::exact_lidar(32, 400, -60, -2);
+    Lidar first(cpu(), p, {}), second(cuda(), p, {});
+    const RangeImage a = first.scan(here.scene, {{116, 12, 1.6}}, 0),
+                     b = second.scan(there.scene, {{116, 12, 1.6}}, 0);
+    for (std::size_t n = 0; n < a.distances.size(); ++n) {
+      ASSERT_EQ(bits_of(a.distances[n]), bits_of(b.distances[n])) << n;
+      ASSERT_EQ(bits_of(a.intensities[n]), bits_of(b.intensities[n])) << n;
+    }
   }
 }
 
