@@ -22,27 +22,25 @@ struct FindFeet {
   int first_row, rows;
   FootNumber* widest;
 
-  /// Whether a coordinate is on the terrain, but for its rounding to a float.
-  DESERT_HD static bool is_on(const Axis& axis, double metres) {
-    const double parts = metres * axis.parts_per_metre;
-    return parts > -0.5 && parts < axis.count + 0.5;
-  }
-  /// Puts a place that was rounded over an edge back into the outermost square.
-  DESERT_HD static void keep_inside(const Axis& axis, int& square, float& share) {
-    if (square >= 0 && square < axis.count) return;
-    share = square < 0 ? 0.0f : 1.0f;
-    square = square < 0 ? 0 : axis.count - 1;
+  /// The square in which a coordinate lies, and where in it; false if it is not on the terrain. One that was
+  /// rounded over an edge is in the square beyond, or in the outermost one of an open terrain.
+  DESERT_HD static bool find(const Axis& axis, float metres, int& square, float& share) {
+    const double parts = metres * axis.parts_per_metre, whole = floor(parts);
+    if (!(parts > -0.5 && parts < axis.count + 0.5)) return false;
+    square = static_cast<int>(whole);
+    share = static_cast<float>(parts - whole);
+    if (square >= 0 && square < axis.count) return true;
+    if (!axis.periodic) share = square < 0 ? 0.0f : 1.0f;
+    square = axis.part(square);
+    return true;
   }
 
   DESERT_HD void operator()(int n) const {
-    const double x = plants.x[n], y = plants.y[n];
     const float radius = plants.radius[n];
-    if (!(radius > 0.0f && is_on(lattice.x, x) && is_on(lattice.y, y))) return;
-    Lattice::Square at = lattice.square(x, y);
-    keep_inside(lattice.x, at.i, at.east);
-    keep_inside(lattice.y, at.j, at.north);
+    Lattice::Square at;
+    if (!(radius > 0.0f) || !find(lattice.y, plants.y[n], at.j, at.north)) return;
     const int from = at.j - first_row, row = from < 0 && lattice.y.periodic ? from + lattice.y.count : from;
-    if (row < 0 || row >= rows) return;
+    if (row < 0 || row >= rows || !find(lattice.x, plants.x[n], at.i, at.east)) return;
     atomic_max(widest + static_cast<std::size_t>(row) * static_cast<std::size_t>(lattice.x.count) +
                    static_cast<std::size_t>(at.i),
                Foot::number(at, radius));

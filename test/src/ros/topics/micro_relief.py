@@ -1,9 +1,11 @@
 #!/usr/bin/env python3
 """~local_map of a fine resolution: ripples on its elevation, and nothing of them in the state."""
+import math
 import unittest
 
 import rospy
 import rostest
+from desert_sim.msg import Plants
 from desert_sim.srv import GetSubmap, GetSubmapRequest, Step
 from desert_sim.testing import PATIENCE
 from map_client import Listener, Trigger, cells
@@ -82,6 +84,20 @@ class MicroRelief(unittest.TestCase):
         self.assertEqual(local.info.resolution, 1)
         for (x, _), height in cells(local, "elevation").items():
             self.assertEqual(height, 3 if x < 4 else 2)
+
+    def test_heaps_are_at_the_plants_that_live(self):
+        self.assertTrue(service("desert_bushes", "reset", Trigger)().success)
+        self.assertTrue(service("desert_bushes", "step", Step)(3).success)
+        with Listener("/desert_bushes/plants", Plants) as listener:
+            m = listener.first("plants")
+        plants = [(m.origin.position.x + x, m.origin.position.y + y) for x, y in zip(m.x, m.y)]
+        self.assertGreater(len(plants), 5)
+        heights = cells(local_map("desert_bushes"), "elevation")
+        self.assertEqual(len(heights), 400 * 80)
+        heaps = [at for at, height in heights.items() if height > 3 + 2 * HEIGHT]
+        self.assertGreater(len(heaps), 200)
+        for x, y in heaps:
+            self.assertLess(min(math.hypot(x - a, y - b) for a, b in plants), 0.64)
 
     def test_the_state_has_none(self):
         local_map("desert_sim")
