@@ -64,7 +64,13 @@ class Node {
       case 5:
         return load(data);
       case 6: {
-        const auto m = fuzz::next_message<Plants>(data, words);
+        auto m = fuzz::next_message<Plants>(data, words);
+        if (data.ConsumeBool()) {  // else most are refused
+          m.origin.position.x = terrain_.snapshot->origin_x;
+          m.origin.position.y = terrain_.snapshot->origin_y;
+          m.y.resize(m.x.size());
+          m.radius.resize(m.x.size());
+        }
         maps_.plants = std::make_shared<const MapPlants>(boost::make_shared<Plants>(m));
         return;
       }
