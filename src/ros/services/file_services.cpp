@@ -9,12 +9,14 @@
 #include <desert_sim/SaveTerrain.h>
 #include <ros/console.h>
 
+#include <chrono>
 #include <memory>
 #include <mutex>
 
 #include "src/core/did_you_mean.hpp"
 #include "src/core/hash_text.hpp"
 #include "src/core/joined.hpp"
+#include "src/core/number_text.hpp"
 #include "src/core/quoted.hpp"
 #include "src/ros/services/services.hpp"
 #include "src/ros/services/terrain_formats.hpp"
@@ -41,13 +43,37 @@ std::string scenario_below_data_folder(const DataFolder& files, const std::strin
   }
 }
 
+/// Terrains and scenarios are several files, which are written after the simulation was asked whether the
+/// journal needs what is there. Until all are written nothing is loaded: it could be a part of them, or what
+/// the journal needs from then on. Nor are others written.
+class FilesLock {
+ public:
+  /// Waits as long as SimulationThread::Patience says. Throws ConfigError.
+  std::unique_lock<std::timed_mutex> lock() {
+    std::unique_lock<std::timed_mutex> lock(mutex_, std::defer_lock);
+    const double seconds = SimulationThread::Patience::seconds();
+    if (!(seconds > 0))
+      lock.lock();
+    else if (!lock.try_lock_for(std::chrono::duration<double>(seconds)))
+      throw ConfigError("other files have been written or loaded for " + number_text(seconds) +
+                        " s (~answer_timeout); this request was withdrawn and has changed nothing");
+    return lock;
+  }
+
+ private:
+  std::timed_mutex mutex_;
+};
+
 /// Starts the simulation from what is in files.
 class Loader {
  public:
-  explicit Loader(const ServiceContext& context) : c_(context) {}
+  Loader(const ServiceContext& context, std::shared_ptr<FilesLock> files)
+      : c_(context), files_(std::move(files)) {}
 
   ReachedState load(const Command& command) {
+    auto lock = files_->lock();
     const ReachedState reached = c_.simulation.apply(command, true).get();
+    lock.unlock();
     terrain_replaced();
     return reached;
   }
@@ -72,6 +98,7 @@ class Loader {
   }
 
   const ServiceContext& c_;
+  std::shared_ptr<FilesLock> files_;
   std::mutex move_center_mutex_;  ///< held while terrain_replaced() moves the frame
 };
 
@@ -96,7 +123,7 @@ void load_checkpoint(Loader& loader, const std::string& path, LoadCheckpointResp
            path.c_str());
 }
 
-void save_terrain_folder(const ServiceContext& c, const SaveTerrainRequest& request,
+void save_terrain_folder(const ServiceContext& c, FilesLock& files, const SaveTerrainRequest& request,
                          SaveTerrainResponse& response) {
   const TerrainFormat format = terrain_format(request.format);
   if (is_bag(request.name))
@@ -104,6 +131,7 @@ void save_terrain_folder(const ServiceContext& c, const SaveTerrainRequest& requ
         "name: " + in_quotes(request.name) +
         " has the extension .bag, which load_terrain reads as a file (allowed: the name of a folder)");
   const WritableFile file = c.files.for_writing(request.name + "/" + terrain_file);
+  const auto lock = files.lock();
   const TerrainToSave terrain = c.simulation.terrain_to_save(file.path()).get();
   const LayerWriter writer =
       layer_writer(format, terrain, c.frames.terrain_frame(), c.node.resolveName("grid_map"));
@@ -116,9 +144,10 @@ void save_terrain_folder(const ServiceContext& c, const SaveTerrainRequest& requ
            response.path.c_str());
 }
 
-void save_scenario_folder(const ServiceContext& c, const SaveScenarioRequest& request,
+void save_scenario_folder(const ServiceContext& c, FilesLock& files, const SaveScenarioRequest& request,
                           SaveScenarioResponse& response) {
   const WritableFile file = c.files.for_writing(request.name + "/" + state_file);
+  const auto lock = files.lock();
   const ScenarioToSave saved = c.simulation.scenario_to_save(file.path()).get();
   file.write([&](const std::string& path) {
     save_scenario(path, saved.scenario, saved.moment.step, saved.checkpoint);
@@ -150,7 +179,8 @@ command::LoadScenario new_scenario(const DataFolder& files, const NewScenarioReq
 
 void add_file_services(Services& services) {
   const ServiceContext& c = services.context();
-  const auto loader = std::make_shared<Loader>(c);
+  const auto files = std::make_shared<FilesLock>();
+  const auto loader = std::make_shared<Loader>(c, files);
 
   services.add<SaveCheckpoint>("save_checkpoint",
                                [&c](const SaveCheckpointRequest& request, SaveCheckpointResponse& response) {
@@ -161,8 +191,8 @@ void add_file_services(Services& services) {
     load_checkpoint(*loader, c.files.for_reading(request.name), response);
   });
   services.add<SaveTerrain>("save_terrain",
-                            [&c](const SaveTerrainRequest& request, SaveTerrainResponse& response) {
-                              save_terrain_folder(c, request, response);
+                            [&c, files](const SaveTerrainRequest& request, SaveTerrainResponse& response) {
+                              save_terrain_folder(c, *files, request, response);
                             });
   services.add<LoadTerrain>(
       "load_terrain", [&c, loader](const LoadTerrainRequest& request, LoadTerrainResponse& response) {
@@ -182,8 +212,8 @@ void add_file_services(Services& services) {
         response.state_hash = loader->load_scenario(command);
       });
   services.add<SaveScenario>("save_scenario",
-                             [&c](const SaveScenarioRequest& request, SaveScenarioResponse& response) {
-                               save_scenario_folder(c, request, response);
+                             [&c, files](const SaveScenarioRequest& request, SaveScenarioResponse& response) {
+                               save_scenario_folder(c, *files, request, response);
                              });
   services.add<NewScenario>("new_scenario",
                             [&c, loader](const NewScenarioRequest& request, NewScenarioResponse& response) {
