@@ -37,7 +37,7 @@ struct Offset {
       : dx(x - p.x, grid.width * grid.cell_size, grid.periodic_x, p.axis_x.fidelity),
         dy(y - p.y, grid.height * grid.cell_size, grid.periodic_y, p.axis_y.fidelity) {}
   /// r²/R²
-  DESERT_HD float relative_square(const WindFeature& f) const {
+  DESERT_HD float relative_square(const WindFeatureParameters& f) const {
     return (dx.square + dy.square) / (f.radius * f.radius);
   }
 };
@@ -49,7 +49,7 @@ struct StreamFunction {
   float* stream;
 
   DESERT_HD float feature_stream(const Prepared& p, float x, float y) const {
-    const WindFeature& f = p.feature;
+    const WindFeatureParameters& f = p.feature;
     if (f.kind == WindFeatureKind::sink) return 0.0f;
     const Offset offset(grid, p, x, y);
     const Distance &dx = offset.dx, &dy = offset.dy;

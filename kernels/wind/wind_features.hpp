@@ -29,7 +29,8 @@
 /// whole life times and a share of one, in double precision, so that it never freezes. The air of a sink
 /// flows towards its centre, or away from it if `speed` is negative, fastest at r = R, with `speed`.
 ///
-/// A feature is there while begin ≤ t < end, and its centre moves from (x, y) at t = begin with its velocity.
+/// A feature is there while begin ≤ t < end. Its centre moves from (x, y) at t = begin with its velocity, or
+/// along its path: linearly from one point to the next, and it stands before the first and after the last.
 ///
 /// Derivatives of ψ are central differences, for which the discrete divergence is 0; those of χ are exact.
 /// Reads no layer, and writes the perturbation only.
@@ -47,7 +48,7 @@ namespace desert_sim {
 enum class WindFeatureKind : int { vortex, jet, turbulence, sink };
 constexpr const char* wind_feature_kinds[] = {"vortex", "jet", "turbulence", "sink"};
 
-struct WindFeature {
+struct WindFeatureParameters {
   WindFeatureKind kind = WindFeatureKind::vortex;
   double x = 0, y = 0;
   float radius = 50;
@@ -62,8 +63,8 @@ struct WindFeature {
   float velocity_x = 0, velocity_y = 0;
 };
 
-constexpr auto parameter_table(const WindFeature*) {
-  using P = WindFeature;
+constexpr auto parameter_table(const WindFeatureParameters*) {
+  using P = WindFeatureParameters;
   return std::make_tuple(
       parameter("kind", &P::kind, wind_feature_kinds, "What the feature is."),
       parameter("x", &P::x, -1e9, 1e9, "m", "Centre, in the terrain's frame."),
@@ -86,10 +87,28 @@ constexpr auto parameter_table(const WindFeature*) {
       parameter("velocity_y", &P::velocity_y, -100, 100, "m/s",
                 "How fast its centre moves, from x, y at `begin`."));
 }
-static_assert(table_is_complete<WindFeature>());
+static_assert(table_is_complete<WindFeatureParameters>());
+
+/// Where a feature is at a time.
+struct WindPathPoint {
+  double time = 0;
+  double x = 0, y = 0;
+};
+constexpr auto parameter_table(const WindPathPoint*) {
+  using P = WindPathPoint;
+  return std::make_tuple(
+      parameter("time", &P::time, 0, 1e12, "s", "Simulated time, later than that of the point before."),
+      parameter("x", &P::x, -1e9, 1e9, "m", "Centre, in the terrain's frame."),
+      parameter("y", &P::y, -1e9, 1e9, "m", "Centre, in the terrain's frame."));
+}
+static_assert(table_is_complete<WindPathPoint>());
+
+struct WindFeature : WindFeatureParameters {
+  std::vector<WindPathPoint> path;  ///< in the place of centre and velocity, its times ascending; empty: none
+};
 
 /// Whether it ends, if ever, after it begins.
-inline bool ends_after_begin(const WindFeature& f) { return f.end == 0 || f.end > f.begin; }
+inline bool ends_after_begin(const WindFeatureParameters& f) { return f.end == 0 || f.end > f.begin; }
 constexpr const char* end_before_begin = "must be above `begin`, or 0 for never";
 
 namespace wind_features {
@@ -103,7 +122,7 @@ struct FeatureAxis {
 
 /// A feature prepared on the host.
 struct Prepared {
-  WindFeature feature;
+  WindFeatureParameters feature;
   float x = 0, y = 0;            ///< centre, from the grid's south-west corner [m]
   wind::Vector direction{1, 0};  ///< unit vector
   float amplitude = 0;           ///< of ψ or χ without its lengths [m/s]; 0 while it is not there
@@ -116,8 +135,9 @@ struct Prepared {
 /// of direction_deg; `time`: simulated time [s].
 Prepared prepare(const WindFeature& feature, wind::Vector direction, const Grid& grid, double origin_x,
                  double origin_y, double time);
-/// Goes on to another time.
-void set_time(Prepared& feature, const Grid& grid, double origin_x, double origin_y, double time);
+/// Goes on to another time. `feature` is what it was prepared of.
+void set_time(Prepared& prepared, const WindFeature& feature, const Grid& grid, double origin_x,
+              double origin_y, double time);
 
 /// `perturbation_x`, `perturbation_y` [m/s] and the scratch `stream` [m²/s]: one float a cell.
 template <class E>

@@ -17,7 +17,7 @@ float from_corner(double position, double origin, double extent, bool periodic) 
 
 /// β is the largest with which a jet is no faster at the seam, (1 + 1.2 β) exp(−(E/π)²/2R²), than in its
 /// middle.
-FeatureAxis feature_axis(const WindFeature& f, double extent, bool periodic) {
+FeatureAxis feature_axis(const WindFeatureParameters& f, double extent, bool periodic) {
   if (!periodic) return {1 / f.scale, 0, 0};
   const double cells = std::max(2.0, std::round(extent / static_cast<double>(f.scale)));
   const double reach = f.kind == WindFeatureKind::jet ? std::max(f.radius, f.length) : f.radius;
@@ -27,7 +27,7 @@ FeatureAxis feature_axis(const WindFeature& f, double extent, bool periodic) {
 }
 
 /// Of ψ or χ without its lengths [m/s].
-double amplitude(const WindFeature& f) {
+double amplitude(const WindFeatureParameters& f) {
   const double speed = f.speed, radius = f.radius, length = f.length, e = std::exp(1.0);
   switch (f.kind) {
     case WindFeatureKind::vortex:
@@ -41,6 +41,25 @@ double amplitude(const WindFeature& f) {
   return 0;
 }
 
+/// In the terrain's frame [m].
+struct Centre {
+  double x, y;
+};
+
+Centre centre_at(const WindFeature& f, double time) {
+  if (f.path.empty()) {
+    const double since = time - f.begin;
+    return {f.x + static_cast<double>(f.velocity_x) * since, f.y + static_cast<double>(f.velocity_y) * since};
+  }
+  const auto next = std::upper_bound(f.path.begin(), f.path.end(), time,
+                                     [](double t, const WindPathPoint& point) { return t < point.time; });
+  if (next == f.path.begin()) return {next->x, next->y};
+  const WindPathPoint& from = *(next - 1);
+  if (next == f.path.end()) return {from.x, from.y};
+  const double span = next->time - from.time, since = time - from.time;
+  return {from.x + (next->x - from.x) / span * since, from.y + (next->y - from.y) / span * since};
+}
+
 }  // namespace
 
 Prepared prepare(const WindFeature& feature, wind::Vector direction, const Grid& grid, double origin_x,
@@ -51,19 +70,18 @@ Prepared prepare(const WindFeature& feature, wind::Vector direction, const Grid&
   p.direction = direction;
   p.axis_x = feature_axis(feature, grid.width * cell, grid.periodic_x);
   p.axis_y = feature_axis(feature, grid.height * cell, grid.periodic_y);
-  set_time(p, grid, origin_x, origin_y, time);
+  set_time(p, feature, grid, origin_x, origin_y, time);
   return p;
 }
 
-void set_time(Prepared& p, const Grid& grid, double origin_x, double origin_y, double time) {
-  const WindFeature& f = p.feature;
-  const double cell = static_cast<double>(grid.cell_size), since = time - f.begin;
-  const bool there = since >= 0 && (f.end == 0 || time < f.end);
+void set_time(Prepared& p, const WindFeature& f, const Grid& grid, double origin_x, double origin_y,
+              double time) {
+  const double cell = static_cast<double>(grid.cell_size);
+  const bool there = time >= f.begin && (f.end == 0 || time < f.end);
+  const Centre centre = centre_at(f, time);
   p.amplitude = there ? static_cast<float>(amplitude(f)) : 0;
-  p.x = from_corner(f.x + static_cast<double>(f.velocity_x) * since, origin_x, grid.width * cell,
-                    grid.periodic_x);
-  p.y = from_corner(f.y + static_cast<double>(f.velocity_y) * since, origin_y, grid.height * cell,
-                    grid.periodic_y);
+  p.x = from_corner(centre.x, origin_x, grid.width * cell, grid.periodic_x);
+  p.y = from_corner(centre.y, origin_y, grid.height * cell, grid.periodic_y);
   const double lives = time / static_cast<double>(p.feature.life_time), whole = std::floor(lives);
   p.life = static_cast<std::uint32_t>(std::fmod(whole, 0x1p32));
   p.share_of_life = static_cast<float>(lives - whole);

@@ -11,7 +11,7 @@ from .did_you_mean import not_one_of
 from .forecast import request_forecast
 from .layer_map import LayerMap
 from .live_parameters import config_of, parameters_of
-from .msg import SimulationStatus, WaterSpring, WindScheduleSegment
+from .msg import SimulationStatus, WaterSpring, WindFeaturePoint, WindScheduleSegment
 from .services import SimulationError, call
 from .srv import (ApplySettings, EditPlants, EditPlantsRequest, EditTerrain, EditTerrainRequest, EditWind,
                   EditWindRequest, GetScenario, GetSubmap, GetSubmapRequest, LoadCheckpoint, LoadScenario, LoadTerrain,
@@ -45,7 +45,8 @@ def _point(place):
 
 
 def _brush(request, frame, fields):
-    """A request for a shape: `center` and `points` may be tuples (x, y) or (x, y, z) [m], `velocity` (x, y) [m/s]."""
+    """A request for a shape: `center` and `points` may be tuples (x, y) or (x, y, z) [m], `velocity` (x, y) [m/s],
+    and each point of `path` (time, x, y) [s, m]."""
     for name, value in fields.items():
         if name not in request.__slots__:
             raise TypeError(not_one_of(name, request.__slots__))
@@ -55,6 +56,8 @@ def _brush(request, frame, fields):
             value = [_point(place) for place in value]
         if name == "velocity" and not hasattr(value, "x"):
             value = Vector3(value[0], value[1], 0.0)
+        if name == "path":
+            value = [place if hasattr(place, "x") else WindFeaturePoint(*place) for place in value]
         setattr(request, name, value)
     request.header.frame_id = frame
     return request

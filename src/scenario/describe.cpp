@@ -53,7 +53,9 @@ std::string describe_parameters() {
   out << "\n### at the surface\n\n";
   write_parameter_table(out, WindParameters());
   out << "\n### each of `wind.features`\n\n";
-  write_parameter_table(out, WindFeature());
+  write_parameter_table(out, WindFeatureParameters());
+  out << "\n### each of `wind.features.path`, in the place of `x`, `y` and the velocity\n\n";
+  write_parameter_table(out, WindPathPoint());
   out << "\n## `run`\n\n";
   write_parameter_table(out, RunParameters());
   out << "\n### each of `run.timeline`\n\n"

@@ -13,6 +13,7 @@
 #include "src/scenario/growth_curves.hpp"
 #include "src/scenario/rover_presets.hpp"
 #include "src/scenario/seed_parameter.hpp"
+#include "src/scenario/wind_feature_lists.hpp"
 #include "src/scenario/yaml_document.hpp"
 #include "src/scenario/yaml_lists.hpp"
 #include "src/scenario/yaml_text.hpp"
@@ -72,7 +73,7 @@ void read_wind(const YAML::Node& node, ValidationErrors& errors, Scenario& s) {
   yaml::reject_unknown_keys(node, "wind.", known, errors);
   if (!node.IsDefined() || !node.IsMap()) return;
   yaml::read_items(node["segments"], "wind.segments", max_wind_segments, errors, s.wind_segments);
-  yaml::read_items(node["features"], "wind.features", max_wind_features, errors, s.wind_features);
+  read_wind_features(node["features"], "wind.features", errors, s.wind_features);
 }
 
 void read_run(const YAML::Node& node, ValidationErrors& errors, Scenario& s) {
@@ -101,8 +102,7 @@ void check_dependencies(const Scenario& s, ValidationErrors& errors) {
       errors.add("wind.features." + std::to_string(n) + ".id",
                  std::to_string(id) + " is already the id of another feature");
   for (std::size_t n = 0; n < s.wind_features.size(); ++n)
-    if (!ends_after_begin(s.wind_features[n]))
-      errors.add("wind.features." + std::to_string(n) + ".end", end_before_begin);
+    check_wind_feature(s.wind_features[n], "wind.features." + std::to_string(n) + ".", errors);
   for (std::size_t n = 0; n < s.terrain.size(); ++n)
     if (const auto* discs = std::get_if<DiscsStep>(&s.terrain[n]);
         discs && discs->radius_high < discs->radius_low)
@@ -253,7 +253,7 @@ std::string dump_scenario(const Scenario& s) {
   yaml::emit_parameters(out, s.wind_regime);
   yaml::emit_parameters(out, s.wind);
   yaml::emit_items(out, "segments", s.wind_segments);
-  yaml::emit_items(out, "features", s.wind_features);
+  emit_wind_features(out, s.wind_features);
   out << YAML::EndMap << YAML::Key << "run" << YAML::Value << YAML::BeginMap;
   yaml::emit_parameters(out, s.run);
   emit_timeline(out, s.timeline);

@@ -92,6 +92,12 @@ command::EditWind RandomCommands::wind_edit(const Simulation& simulation) {
   randomise(edit);
   randomise(edit.feature);
   if (!one_in(20)) edit.feature.begin = between(0, 20), edit.feature.end = one_in(2) ? 0 : between(20, 40);
+  if (one_in(3)) {
+    edit.feature.x = edit.feature.y = edit.feature.velocity_x = edit.feature.velocity_y = 0;
+    double time = between(0, 20);
+    for (int points = static_cast<int>(2 + below(3)); points > 0; --points, time += between(0.1, 9))
+      edit.feature.path.push_back({time, between(-50, 150), between(-50, 150)});
+  }
   const std::vector<WindFeature>& there = simulation.scenario().wind_features;
   if (edit.operation == WindEdit::add)
     edit.feature.id = static_cast<int>(1 + below(5));

@@ -11,6 +11,7 @@
 #include "src/core/joined.hpp"
 #include "src/ros/services/request_fields.hpp"
 #include "src/ros/services/requests.hpp"
+#include "src/scenario/wind_feature_lists.hpp"
 
 namespace desert_sim {
 
@@ -106,6 +107,7 @@ void check_feature_fields(const EditWindRequest& request, const std::string& why
     require_left_out(request.begin, "begin", why);
     require_left_out(request.end, "end", why);
     require_left_out(request.velocity, "velocity", why);
+    require_left_out(request.path, "path", why);
   }
   if (kind != WindFeatureKind::jet) {
     require_left_out(request.direction_deg, "direction_deg", why);
@@ -116,6 +118,42 @@ void check_feature_fields(const EditWindRequest& request, const std::string& why
     require_left_out(request.life_time, "life_time", why);
     require_left_out(request.seed, "seed", why);
   }
+}
+
+void set_path(const EditWindRequest& request, const tf2::Transform& transform, WindFeature& feature) {
+  const std::string why = "`path` says where the feature is";
+  require_left_out(request.center, "center", why);
+  require_left_out(request.velocity, "velocity", why);
+  if (request.path.size() > max_wind_path)
+    throw ConfigError("path: " + std::to_string(request.path.size()) + " points are given (allowed: 2 to " +
+                      std::to_string(max_wind_path) + ")");
+  for (std::size_t n = 0; n < request.path.size(); ++n) {
+    const WindFeaturePoint& given = request.path[n];
+    const std::string name = "path[" + std::to_string(n) + "].";
+    require_finite(given.time, name + "time");
+    require_finite(given.x, name + "x");
+    require_finite(given.y, name + "y");
+    const tf2::Vector3 place = transform * tf2::Vector3(given.x, given.y, 0);
+    feature.path.push_back({given.time, place.x(), place.y()});
+  }
+}
+
+/// Sets where the feature is: its path, or its centre and velocity.
+void set_place(const EditWindRequest& request, const tf2::Transform& transform, WindFeature& feature) {
+  if (!request.path.empty()) return set_path(request, transform, feature);
+  require_finite(request.center, "center");
+  const tf2::Vector3 center = transform * tf2::Vector3(request.center.x, request.center.y, request.center.z);
+  feature.x = center.x();
+  feature.y = center.y();
+  require_finite(request.velocity.x, "velocity.x");
+  require_finite(request.velocity.y, "velocity.y");
+  if (!(request.velocity.z == 0))
+    throw ConfigError("velocity.z: " + std::to_string(request.velocity.z) +
+                      " must be 0: features move over the map");
+  const tf2::Vector3 velocity =
+      transform.getBasis() * tf2::Vector3(request.velocity.x, request.velocity.y, 0);
+  feature.velocity_x = to_float(velocity.x());
+  feature.velocity_y = to_float(velocity.y());
 }
 
 }  // namespace
@@ -132,26 +170,14 @@ command::EditWind wind_edit_command(const EditWindRequest& request, const Terrai
     return command;
   }
   feature.kind = choice_named<WindFeatureKind>(wind_feature_kinds, request.kind, "kind");
-  require_finite(request.center, "center");
   const tf2::Transform transform = frames.to_terrain(request.header);
-  const tf2::Vector3 center = transform * tf2::Vector3(request.center.x, request.center.y, request.center.z);
-  feature.x = center.x();
-  feature.y = center.y();
+  set_place(request, transform, feature);
   feature.radius = to_float(request.radius);
   feature.speed = to_float(request.speed);
   require_finite(request.begin, "begin");
   require_finite(request.end, "end");
-  require_finite(request.velocity.x, "velocity.x");
-  require_finite(request.velocity.y, "velocity.y");
-  if (!(request.velocity.z == 0))
-    throw ConfigError("velocity.z: " + std::to_string(request.velocity.z) +
-                      " must be 0: features move over the map");
-  const tf2::Vector3 velocity =
-      transform.getBasis() * tf2::Vector3(request.velocity.x, request.velocity.y, 0);
   feature.begin = request.begin;
   feature.end = request.end;
-  feature.velocity_x = to_float(velocity.x());
-  feature.velocity_y = to_float(velocity.y());
   check_feature_fields(request, "kind '" + request.kind + "' does not use it", feature.kind);
   if (feature.kind == WindFeatureKind::jet) {
     require_finite(request.direction_deg, "direction_deg");

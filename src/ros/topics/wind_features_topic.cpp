@@ -23,6 +23,12 @@ WindFeatureItem message_of(const WindFeature& feature) {
   m.end = feature.end;
   m.velocity.x = static_cast<double>(feature.velocity_x);
   m.velocity.y = static_cast<double>(feature.velocity_y);
+  for (const WindPathPoint& point : feature.path) {
+    WindFeaturePoint& there = m.path.emplace_back();
+    there.time = point.time;
+    there.x = point.x;
+    there.y = point.y;
+  }
   if (feature.kind == WindFeatureKind::jet) {
     m.direction_deg = static_cast<double>(feature.direction_deg);
     m.length = static_cast<double>(feature.length);

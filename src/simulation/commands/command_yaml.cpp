@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "src/core/base64.hpp"
+#include "src/scenario/wind_feature_lists.hpp"
 #include "src/scenario/yaml_parameters.hpp"
 
 namespace desert_sim {
@@ -127,7 +128,15 @@ void emit(YAML::Emitter& out, const command::EditWind& edit) {
   if (edit.operation == WindEdit::remove)
     out << YAML::Key << "id" << YAML::Value << edit.feature.id;
   else if (edit.operation != WindEdit::clear)
-    yaml::emit_parameters(out, edit.feature);
+    emit_wind_feature(out, edit.feature);
+}
+
+WindFeature read_feature(const YAML::Node& node, const std::string& source) {
+  WindFeature feature{read_all<WindFeatureParameters>(node, source), {}};
+  ValidationErrors errors(source);
+  read_wind_path(node["path"], "path", errors, feature.path);
+  errors.throw_if_any();
+  return feature;
 }
 
 command::EditWind read(Type<command::EditWind>, const YAML::Node& node, const std::string& source) {
@@ -135,7 +144,7 @@ command::EditWind read(Type<command::EditWind>, const YAML::Node& node, const st
   if (edit.operation == WindEdit::remove)
     edit.feature.id = scalar<int>(node, "id", source);
   else if (edit.operation != WindEdit::clear)
-    edit.feature = read_all<WindFeature>(node, source);
+    edit.feature = read_feature(node, source);
   return edit;
 }
 

@@ -6,6 +6,7 @@
 #include "src/scenario/live_parameters.hpp"
 #include "src/scenario/range_checks.hpp"
 #include "src/scenario/terrain_builder.hpp"
+#include "src/scenario/wind_feature_lists.hpp"
 #include "src/simulation/commands/edit_checks.hpp"
 #include "src/simulation/commands/edited_layers.hpp"
 #include "src/simulation/editing/plant_edit.hpp"
@@ -151,6 +152,15 @@ CommandResult Commands::Execution::operator()(const command::SetWindSchedule& co
   return {};
 }
 
+void check_wind_feature(const WindFeature& feature) {
+  check_ranges(static_cast<const WindFeatureParameters&>(feature), "edit_wind");
+  for (std::size_t n = 0; n < feature.path.size(); ++n)
+    check_ranges(feature.path[n], "edit_wind: path." + std::to_string(n));
+  ValidationErrors errors("edit_wind");
+  check_wind_feature(feature, "", errors);
+  errors.throw_if_any();
+}
+
 namespace {
 
 /// The features as the command leaves them. Throws ConfigError if it is refused.
@@ -169,9 +179,7 @@ std::vector<WindFeature> edited_features(const command::EditWind& command,
   if (command.operation == WindEdit::remove) {
     features.erase(found);
   } else {
-    check_ranges(command.feature, "edit_wind");
-    if (!ends_after_begin(command.feature))
-      throw ConfigError(std::string("edit_wind: end: ") + end_before_begin);
+    check_wind_feature(command.feature);
     if (known)
       *found = command.feature;
     else if (features.size() < max_wind_features)

@@ -16,6 +16,8 @@ namespace desert_sim {
 /// Throws ConfigError, in the name of `what`, unless it is a timeline or a rose whose numbers are in their
 /// ranges.
 void check_wind_schedule(const WindRegime& regime, const std::string& what);
+/// Throws ConfigError unless the feature can be one of the wind's, apart from its id.
+void check_wind_feature(const WindFeature& feature);
 
 class Commands {
  public:

@@ -66,6 +66,9 @@ struct Check {
     require_still_plants(c, scenario);
   }
   void operator()(const command::EditPlants& c) const { check_plant_edit(c, scenario); }
+  void operator()(const command::EditWind& c) const {
+    if (c.operation == WindEdit::add || c.operation == WindEdit::change) check_wind_feature(c.feature);
+  }
   void operator()(const command::SetWindSchedule& c) const { check_wind_schedule(c.regime, c.name); }
   template <class Other>
   void operator()(const Other&) const {}  // its table says it all

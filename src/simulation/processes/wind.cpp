@@ -42,6 +42,7 @@ namespace {
 
 /// The local features of the wind on the device.
 struct LocalWind {
+  std::vector<WindFeature> given;  ///< as the scenario has them
   std::vector<wind_features::Prepared> prepared;
   Buffer<wind_features::Prepared> features;      ///< `prepared` on the device
   Buffer<float> perturbation_x, perturbation_y;  ///< of the features [m/s]; empty where there are none
@@ -50,13 +51,14 @@ struct LocalWind {
 
   void set_features(const SimulationState& state) {
     const Scenario& s = state.scenario;
+    given = s.wind_features;
     prepared.clear();
-    if (s.wind_features.empty()) {
+    if (given.empty()) {
       features = {};
       for (Buffer<float>* buffer : {&perturbation_x, &perturbation_y}) *buffer = {};
       return;
     }
-    for (const WindFeature& feature : s.wind_features)
+    for (const WindFeature& feature : given)
       prepared.push_back(wind_features::prepare(feature, unit_vector(feature.direction_deg),
                                                 state.terrain.grid(), s.grid.origin_x, s.grid.origin_y,
                                                 state.time()));
@@ -70,8 +72,8 @@ struct LocalWind {
   void update(StepContext& c) {
     if (!features) return;
     const GridParameters& grid = c.scenario().grid;
-    for (wind_features::Prepared& feature : prepared)
-      wind_features::set_time(feature, c.terrain.grid, grid.origin_x, grid.origin_y, c.time());
+    for (std::size_t n = 0; n < prepared.size(); ++n)
+      wind_features::set_time(prepared[n], given[n], c.terrain.grid, grid.origin_x, grid.origin_y, c.time());
     features.upload(prepared);
     with_backend(c.exec(), [&](auto& e) {
       wind_features::step(e, c.terrain.grid, features, c.fields.scratch<float>(0), perturbation_x.data(),

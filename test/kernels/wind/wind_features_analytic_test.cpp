@@ -68,6 +68,10 @@ WindFeature feature(WindFeatureKind kind, double x, double y, float radius, floa
   return f;
 }
 
+WindPathPoint path_point(double time, double x, double y) {
+  return {time, Perturbation::origin_x + x, Perturbation::origin_y + y};
+}
+
 /// Near the seams of the torus, with radii up to its extent: the stream function of a jet jumped there, which
 /// made 105 m/s of 3 m/s once its radius passed a sixth of the extent.
 TEST_P(WindField, FeaturesAreSmoothAcrossTheSeamAtAnyRadius) {
@@ -160,6 +164,42 @@ TEST_P(WindField, FeaturesComeGoAndMove) {
       EXPECT_EQ(wind.v, expected.v);
       EXPECT_GT(wind.fastest(), 0.5);
     }
+  }
+}
+
+/// Bit for bit as the velocity that it stands for, and over the seams of the torus, too.
+TEST_P(WindField, APathOfTwoPointsIsAVelocity) {
+  const Grid grid{60, 50, 2, true, true};
+  WindFeature moving = feature(WindFeatureKind::vortex, 20, 30, 12, 4), on_path = moving;
+  moving.begin = on_path.begin = 10;
+  moving.velocity_x = 3;
+  moving.velocity_y = -1.5f;
+  on_path.path = {path_point(10, 20, 30), path_point(90, 260, -90)};
+  for (const double time : {10.0, 10.1, 33.3, 60.0, 89.99}) {
+    SCOPED_TRACE(time);
+    const Perturbation wind(exec(), grid, {on_path}, time), expected(exec(), grid, {moving}, time);
+    EXPECT_EQ(wind.u, expected.u);
+    EXPECT_EQ(wind.v, expected.v);
+    EXPECT_GT(wind.fastest(), 0.5);
+  }
+}
+
+/// It stands at the first point before the path begins and at the last when it is over, and turns in between.
+TEST_P(WindField, APathGoesAroundItsCorners) {
+  const Grid grid{60, 50, 2, false, false};
+  WindFeature on_path = feature(WindFeatureKind::jet, 0, 0, 12, 4);
+  on_path.path = {path_point(10, 20, 30), path_point(20, 60, 30), path_point(40, 60, 70)};
+  struct Place {
+    double time, x, y;
+  };
+  for (const Place& place : {Place{0, 20, 30}, Place{10, 20, 30}, Place{15, 40, 30}, Place{20, 60, 30},
+                             Place{25, 60, 40}, Place{40, 60, 70}, Place{1e6, 60, 70}}) {
+    SCOPED_TRACE(place.time);
+    const WindFeature there = feature(WindFeatureKind::jet, place.x, place.y, on_path.radius, on_path.speed);
+    const Perturbation wind(exec(), grid, {on_path}, place.time), expected(exec(), grid, {there}, place.time);
+    EXPECT_EQ(wind.u, expected.u);
+    EXPECT_EQ(wind.v, expected.v);
+    EXPECT_GT(wind.fastest(), 0.5);
   }
 }
 

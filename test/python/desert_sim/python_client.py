@@ -256,6 +256,7 @@ class Calls(Client):
         self.assertAlmostEqual(self.desert.status().wind_above.x, 3, 5)
         self.desert.set_wind_schedule([{"speed": 4, "duration": 5}, {"speed": 6, "direction_deg": 30, "duration": 5}], repeat=True)
         self.desert.edit_wind("add", id=3, kind="vortex", center=(60, 20), radius=5, speed=2, velocity=(1, 0))
+        self.desert.edit_wind("change", id=3, kind="vortex", path=[(0, 60, 20), (9, 70, 20), (20, 70, 5)], radius=5, speed=2)
         self.desert.edit_wind("remove", id=3)
         self.desert.set_weather(rain_rate=1e-4, springs=[{"x": 60, "y": 20, "radius": 4, "discharge": 2}])
         self.desert.step(2)

@@ -45,6 +45,17 @@ TEST(Loader, NamesUnknownKeysAndWhatIsKnown) {
   expect_refused("terrain: [unifrom: {layer: sand}]", {"terrain.0", "unifrom", "uniform"});
   expect_refused("wind: {features: [{kind: vortex, strength: 2}]}", {"wind.features.0.strength"});
   expect_refused("wind: {features: [{begin: 5, end: 5}]}", {"wind.features.0.end", "above `begin`, or 0"});
+  const auto refuse_path = [](const std::string& feature, const std::vector<std::string>& parts) {
+    expect_refused("wind: {features: [{}, {" + feature + "}]}", parts);
+  };
+  refuse_path("path: 3", {"wind.features.1.path", "a list is expected"});
+  refuse_path("path: [{time: 1, x: 2}]", {"wind.features.1.path: 1 points", "2 to 256"});
+  refuse_path("path: [{time: 1}, {time: 2, z: 3}]", {"wind.features.1.path.1.z", "unknown key"});
+  refuse_path("path: [{time: 1}, {time: 1}]", {"path.1.time: 1 s is not after the 1 s of the point before"});
+  refuse_path("path: [{time: 1}, {time: 2, x: 2e9}]", {"path.1.x", "[-1e+09, 1e+09] m"});
+  const std::string both = "beside `path`, which says where the feature is (allowed: one of both)";
+  for (const std::string key : {"x", "y", "velocity_x", "velocity_y"})
+    refuse_path(key + ": 1, path: [{time: 1}, {time: 2}]", {"wind.features.1." + key + ": is given " + both});
 }
 
 TEST(Loader, NamesTextWhereANumberIsExpected) {

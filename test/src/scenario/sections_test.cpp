@@ -64,7 +64,7 @@ Scenario scenario_at(const std::function<double()>& share) {
   s.wind_regime.series_file = "wind.csv";  // which the last of the regimes needs
   s.wind_segments.resize(2);
   for (WindSegment& segment : s.wind_segments) set_all(segment, share);
-  s.wind_features.resize(2);
+  s.wind_features.resize(3);
   for (WindFeature& feature : s.wind_features) set_all(feature, share);
   s.species.resize(3);
   for (std::size_t n = 0; n < s.species.size(); ++n) {
@@ -102,9 +102,16 @@ Scenario scenario_at(const std::function<double()>& share) {
       99.0 * static_cast<double>(s.grid.cell_size) / static_cast<double>(s.run.time_step);
   s.get<SaltationParameters>().influx =
       std::min(s.get<SaltationParameters>().influx, static_cast<float>(most_influx));
+  WindFeature& on_path = s.wind_features[2];
+  on_path.x = on_path.y = on_path.velocity_x = on_path.velocity_y = 0;
+  on_path.path.resize(3);
+  for (WindPathPoint& point : on_path.path) set_all(point, share);
+  for (std::size_t n = 0; n < on_path.path.size(); ++n)
+    on_path.path[n].time = (static_cast<double>(n) + 0.9 * share()) * 1e11;
   for (WindFeature& feature : s.wind_features)
     if (!ends_after_begin(feature)) feature.begin = std::min(feature.begin, 0.5 * feature.end);
   s.wind_features[1].id = std::max(s.wind_features[0].id - 1, 0);
+  s.wind_features[2].id = std::max(s.wind_features[1].id - 1, 0);
   auto& discs = std::get<DiscsStep>(s.terrain[5]);
   discs.radius_low = std::min(discs.radius_low, discs.radius_high);
   return s;
@@ -194,7 +201,8 @@ TEST(ParameterTables, HaveRangesThatHoldTheirDefaultsAndDocumentation) {
   check("wind", s.wind);
   check("wind", s.wind_regime);
   check("segment", WindSegment{});
-  check("feature", WindFeature{});
+  check("feature", WindFeatureParameters{});
+  check("point of a feature's path", WindPathPoint{});
 }
 
 /// If this fails: desert_run --describe > config/parameters.md

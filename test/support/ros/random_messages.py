@@ -22,7 +22,7 @@ RANGES = {"x": (-6, 40), "y": (4, 40), "z": (0, 0), "position_x": (0, 30), "posi
           "density": (0, 0.3), "size": (0.01, 1), "rain_rate": (0, 1e-3), "rain_share": (0, 1), "evaporation": (0, 0.1),
           "ramp": (0, 3), "duration": (3, 20), "discharge": (0, 0.1), "wave_strength": (0, 0.1), "sea_level": (-2, 3),
           "value": (0, 1.5), "image_scale": (0, 2), "smooth_radius": (1, 4), "smooth_passes": (1, 4), "steps": (0, 3),
-          "width": (1, 4), "height": (1, 4), "id": (1, 5), "begin": (0, 5), "end": (5, 20), "seed": (0, 99), "w": (1, 1),
+          "width": (1, 4), "height": (1, 4), "id": (1, 5), "begin": (0, 5), "end": (5, 20), "time": (0, 20), "seed": (0, 99), "w": (1, 1),
           "horizon": (0, 30), "moments": (1, 4), "members": (0, 3), "gust_speed": (0, 1), "gust_direction_deg": (0, 90)}
 
 
@@ -38,6 +38,8 @@ class RandomMessages:
             setattr(message, name, self.value(type(message).__name__.lstrip("_"), name, kind))
         if hasattr(message, "encoding") and not self.rarely():
             self.fit(message)
+        if hasattr(message, "path") and not self.rarely():
+            self.fit_path(message)
         return message
 
     def value(self, owner, name, kind):
@@ -76,6 +78,14 @@ class RandomMessages:
             return self.draw.choice(["", "x", "\n", "a: [", "x" * 3000, "nowhere"])
         words = {"operation": OPERATIONS, "kind": KINDS}.get(name, {}).get(owner) or WORDS.get(name) or ["x"]
         return self.draw.choice(words)
+
+    def fit_path(self, request):
+        """Leaves a request for a feature of the wind either its path or its place."""
+        if len(request.path) < 2 or self.draw.random() < 0.5:
+            request.path = []
+            return
+        request.center, request.velocity = type(request.center)(), type(request.velocity)()
+        request.path.sort(key=lambda point: point.time)
 
     def fit(self, image):
         """Makes step and data of an image fit its size."""

@@ -35,6 +35,13 @@ inline geometry_msgs::Vector3 vector_of(double x, double y) {
   vector.y = y;
   return vector;
 }
+inline desert_sim::WindFeaturePoint path_point(double time, double x, double y) {
+  desert_sim::WindFeaturePoint point;
+  point.time = time;
+  point.x = x;
+  point.y = y;
+  return point;
+}
 inline sensor_msgs::Image white_pixel() {
   sensor_msgs::Image image;
   image.width = image.height = image.step = 1;
@@ -92,7 +99,8 @@ inline std::vector<RequestField<desert_sim::EditWindRequest>> fields_of(const de
           request_field("seed", &R::seed, 7),
           request_field("begin", &R::begin, 3.0),
           request_field("end", &R::end, 9.0),
-          request_field("velocity", &R::velocity, vector_of(3, 4))};
+          request_field("velocity", &R::velocity, vector_of(3, 4)),
+          request_field("path", &R::path, {path_point(3, 5, 4), path_point(7, 6, 1)})};
 }
 
 inline std::vector<RequestField<desert_sim::SetWindRequest>> fields_of(const desert_sim::SetWindRequest&) {

@@ -146,7 +146,8 @@ TEST(Requests, EditPlantsRefusesWhatIsNotUsed) {
 
 TEST(Requests, EditWindRefusesWhatIsNotUsed) {
   const auto make = [](const EditWindRequest& request) { return wind_edit_command(request, frames); };
-  const std::set<std::string> all{"id", "kind", "center", "radius", "speed", "begin", "end", "velocity"};
+  const std::set<std::string> all{"id",    "kind", "center",   "radius", "speed",
+                                  "begin", "end",  "velocity", "path"};
   EditWindRequest request;
   for (const char* operation : {"add", "change"}) {
     request.operation = operation;
@@ -165,6 +166,9 @@ TEST(Requests, EditWindRefusesWhatIsNotUsed) {
     request.kind = "sink";
     for (const char* name : {"direction_deg", "length", "scale", "life_time", "seed"})
       EXPECT_THROW(make(with(request, {name})), ConfigError) << name;
+    EXPECT_NO_THROW(make(with(request, {"path", "begin", "end"})));
+    for (const char* name : {"center", "velocity"})
+      EXPECT_THROW(make(with(request, {"path", name})), ConfigError) << name;
   }
   request = EditWindRequest();
   request.operation = "remove";

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <memory>
 
+#include "test/support/ros/request_fields.hpp"
 #include "test/support/ros/service_tests.hpp"
 
 namespace {
@@ -230,6 +231,15 @@ TEST_F(WindServices, WindFeaturesAreListedWithTheirIds) {
   EXPECT_EQ(both[1].end, 1e9);
   EXPECT_EQ(both[1].velocity.x, 3);
   EXPECT_EQ(both[1].length, 0) << "a vortex has none, as ~edit_wind wants it";
+  vortex.operation = EditWind::Request::CHANGE;
+  vortex.center = {}, vortex.velocity = {};
+  vortex.path = {node_test::path_point(1, 40, 12), node_test::path_point(5, 50, -2)};
+  const auto moved = listed_after(vortex);
+  ASSERT_EQ(moved.at(1).path.size(), 2u);
+  EXPECT_EQ(moved[1].path[1].time, 5);
+  EXPECT_EQ(moved[1].path[1].x, 50);
+  EXPECT_EQ(moved[1].path[1].y, -2);
+  EXPECT_TRUE(moved[0].path.empty());
   EditWind::Request cleared;
   cleared.operation = EditWind::Request::CLEAR;
   EXPECT_TRUE(listed_after(cleared).empty());
@@ -253,6 +263,12 @@ TEST_F(WindServices, EditWindRefuses) {
   request = jet("add");
   request.begin = 4, request.end = 3;
   expect_refused<EditWind>("edit_wind", request, "end", "above `begin`");
+  request = jet("add");
+  request.center = {};
+  request.path = {node_test::path_point(4, 1, 1), node_test::path_point(3, 1, 1)};
+  expect_refused<EditWind>("edit_wind", request, "path.1.time", "not after the 4 s");
+  request.path[1].y = not_a_number;
+  expect_refused<EditWind>("edit_wind", request, "path[1].y: nan", "finite");
   request = jet("add");
   request.header.frame_id = "nowhere";
   expect_refused<EditWind>("edit_wind", request, "nowhere", "");

@@ -100,6 +100,30 @@ TEST_P(EditWind, MovesWithItsVelocity) {
   }
 }
 
+/// Around a corner, and from a checkpoint and from a scenario that is saved on the way, too.
+TEST_P(EditWind, FollowsItsPath) {
+  const test::TemporaryFolder folder;
+  command::EditWind on_path = vortex(WindEdit::add);
+  on_path.feature.x = on_path.feature.y = 0;
+  on_path.feature.path = {{1, 140, -20}, {3, 144, -20}, {5, 144, -14}};
+  auto s = simulation(plain), edited = simulation(plain);
+  s->apply(on_path);
+  EXPECT_EQ(test::parsed(dump_scenario(s->scenario())).wind_features.at(0).path.at(2).y, -14);
+  command::EditWind standing = vortex(WindEdit::add);
+  const double x[] = {140, 140, 142, 144, 144, 144, 144}, y[] = {-20, -20, -20, -20, -17, -14, -14};
+  for (int second = 0; second < 7; ++second) {
+    standing.feature.x = x[second];
+    standing.feature.y = y[second];
+    edited->apply(standing);
+    standing.operation = WindEdit::change;
+    EXPECT_EQ(hash_after(*s, 1), hash_after(*edited, 1)) << second;
+    if (second == 2) {
+      save_checkpoint(folder.path("a"), *s);
+      s = load_checkpoint(folder.path("a"), exec());
+    }
+  }
+}
+
 TEST_P(EditWind, IsInACheckpoint) {
   const test::TemporaryFolder folder;
   auto s = simulation(plain);
@@ -138,6 +162,16 @@ TEST_P(EditWind, RefusesAndChangesNothing) {
   edit.feature.begin = 5;
   edit.feature.end = 4;
   refused(edit, "end: must be above `begin`");
+  edit = vortex(WindEdit::change);
+  edit.feature.path = {{1, 0, 0}, {2, 0, 0}};
+  refused(edit, "x: is given beside `path`");
+  edit.feature.x = edit.feature.y = 0;
+  edit.feature.path[1].time = 0.5;
+  refused(edit, "path.1.time: 0.5 s is not after the 1 s");
+  edit.feature.path[1] = {2, 2e9, 0};
+  refused(edit, "path.1: x");
+  edit.feature.path.pop_back();
+  refused(edit, "path: 1 points");
   edit = vortex(WindEdit::add);
   for (int id = 8; id < 8 + static_cast<int>(max_wind_features) - 1; ++id) {
     edit.feature.id = id;
