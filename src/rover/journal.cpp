@@ -105,10 +105,11 @@ void read_header(const YAML::Node& node, const std::string& where, RoverJournal&
     journal.micro_relief = node["micro_relief"].as<bool>();  // journals of older versions lack it
   ValidationErrors errors(where);
   const YAML::Node rover = YAML::Load(node["rover"].as<std::string>());
-  std::set<std::string> known{"wheel_ground"};
+  std::set<std::string> known{"wheel_ground", "wet_ground"};
   yaml::read_parameters(rover, "", errors, journal.rover, known);
   yaml::reject_unknown_keys(rover, "", known, errors);
   yaml::read_section(rover["wheel_ground"], "wheel_ground", errors, journal.ground);
+  yaml::read_section(rover["wet_ground"], "wet_ground", errors, journal.wet_ground);
   errors.throw_if_any();
 }
 
@@ -186,7 +187,7 @@ void apply(Rover& rover, const RoverEvent& event, const GroundAtStep& ground) {
 
 RoverState replay(const RoverJournal& journal, const GroundAtStep& ground,
                   const std::function<void(const RoverState&)>& watch) {
-  Rover rover(journal.rover, journal.ground);
+  Rover rover(journal.rover, journal.ground, "rover", journal.wet_ground);
   for (const RoverEvent& event : journal.events) {
     apply(rover, event, ground);
     if (watch) watch(rover.state());

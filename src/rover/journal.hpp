@@ -60,6 +60,7 @@ class RoverJournalWriter {
 struct RoverJournal {
   RoverParameters rover;
   WheelGroundParameters ground;
+  WetGroundParameters wet_ground;
   bool micro_relief = false;  ///< whether its ground had ripples and bumps
   std::vector<RoverEvent> events;
 };

@@ -40,10 +40,11 @@ void require_finite(double value, const char* name) {
 
 }  // namespace
 
-Rover::Rover(const RoverParameters& rover, const WheelGroundParameters& ground, const std::string& source)
+Rover::Rover(const RoverParameters& rover, const WheelGroundParameters& ground, const std::string& source,
+             const WetGroundParameters& wet)
     : rover_((check_rover(rover, source), rover)),
-      text_(rover_text(rover, ground)),
-      law_(wheels_of(rover, ground)),
+      text_(rover_text(rover, ground, wet)),
+      law_(wheels_of(rover, ground, wet)),
       suspension_(rover),
       drive_(rover, suspension_),
       contact_(rover, suspension_) {

@@ -40,7 +40,7 @@ class Rover {
 
   /// Throws ConfigError, naming `source`, for parameters that do not go together.
   Rover(const RoverParameters& rover, const WheelGroundParameters& ground,
-        const std::string& source = "rover");
+        const std::string& source = "rover", const WetGroundParameters& wet = {});
 
   const RoverParameters& parameters() const { return rover_; }
   const Suspension& suspension() const { return suspension_; }

@@ -39,18 +39,27 @@ void check_rover(const RoverParameters& r, const std::string& source) {
   errors.throw_if_any();
 }
 
-std::string rover_text(const RoverParameters& rover, const WheelGroundParameters& ground) {
+std::string rover_text(const RoverParameters& rover, const WheelGroundParameters& ground,
+                       const WetGroundParameters& wet) {
   YAML::Emitter out;
   yaml::set_full_precision(out);
   out << YAML::BeginMap;
   yaml::emit_parameters(out, rover);
   out << YAML::Key << "wheel_ground" << YAML::Value << YAML::BeginMap;
   yaml::emit_parameters(out, ground);
-  out << YAML::EndMap << YAML::EndMap;
+  out << YAML::EndMap;
+  const WetGroundParameters usual;
+  if (wet.half_wet != usual.half_wet || wet.saturated != usual.saturated) {
+    out << YAML::Key << "wet_ground" << YAML::Value << YAML::BeginMap;
+    yaml::emit_parameters(out, wet);
+    out << YAML::EndMap;
+  }
+  out << YAML::EndMap;
   return std::string(out.c_str()) + "\n";
 }
 
-wheels::WheelGround wheels_of(const RoverParameters& r, const WheelGroundParameters& ground) {
+wheels::WheelGround wheels_of(const RoverParameters& r, const WheelGroundParameters& ground,
+                              const WetGroundParameters& wet) {
   TraversabilityParameters p;
   p.wheel_law = r.wheel_law;
   p.mass = static_cast<float>(r.mass);
@@ -58,7 +67,10 @@ wheels::WheelGround wheels_of(const RoverParameters& r, const WheelGroundParamet
   p.wheels = wheel_count(r.suspension);
   p.wheel_radius = static_cast<float>(r.wheel_radius);
   p.wheel_width = static_cast<float>(r.wheel_width);
-  return wheels::make_wheel_ground(p, ground);
+  ReposeParameters repose;
+  repose.half_wet = static_cast<float>(wet.half_wet);
+  repose.saturated = static_cast<float>(wet.saturated);
+  return wheels::make_wheel_ground(p, ground, repose);
 }
 
 }  // namespace desert_sim

@@ -133,14 +133,34 @@ constexpr auto parameter_table(const RoverParameters*) {
 }
 static_assert(table_is_complete<RoverParameters>());
 
+/// What moisture makes of the strength of the ground, as the scenario's section repose says it to the
+/// simulation.
+struct WetGroundParameters {
+  double half_wet = 1.5;
+  double saturated = 0.15;
+};
+
+constexpr auto parameter_table(const WetGroundParameters*) {
+  using P = WetGroundParameters;
+  return std::make_tuple(
+      parameter("half_wet", &P::half_wet, 0.1, 10, "1",
+                "The scenario's repose.half_wet: strength of half-wet ground over that of dry."),
+      parameter("saturated", &P::saturated, 0.001, 10, "1",
+                "The scenario's repose.saturated: strength of saturated ground over that of dry."));
+}
+static_assert(table_is_complete<WetGroundParameters>());
+
 /// Throws ConfigError that names `source` and all parameters that do not go together.
 void check_rover(const RoverParameters& rover, const std::string& source);
 
-/// The parameters as YAML, one a line; all digits. Rovers with the same text are the same rover.
-std::string rover_text(const RoverParameters& rover, const WheelGroundParameters& ground);
+/// The parameters as YAML, one a line; all digits. Rovers with the same text are the same rover. That of wet
+/// ground which is the default leaves it out, as earlier versions did.
+std::string rover_text(const RoverParameters& rover, const WheelGroundParameters& ground,
+                       const WetGroundParameters& wet = {});
 
 /// The wheels of this rover on such ground.
-wheels::WheelGround wheels_of(const RoverParameters& rover, const WheelGroundParameters& ground);
+wheels::WheelGround wheels_of(const RoverParameters& rover, const WheelGroundParameters& ground,
+                              const WetGroundParameters& wet = {});
 
 constexpr int wheel_count(SuspensionKind kind) { return kind == SuspensionKind::rocker ? 4 : 6; }
 

@@ -65,9 +65,13 @@ class Reader {
 std::string difference(const std::string& saved, const std::string& here) {
   std::istringstream a(saved), b(here);
   std::string x, y;
-  while (std::getline(a, x) && std::getline(b, y))
+  while (true) {
+    const bool in_saved = static_cast<bool>(std::getline(a, x)),
+               in_here = static_cast<bool>(std::getline(b, y));
+    if (!in_saved || !in_here)
+      return in_quotes(in_saved ? x : y) + ", which " + (in_saved ? "this rover" : "it") + " has not";
     if (x != y) return in_quotes(x) + ", while this rover has " + in_quotes(y);
-  return "other parameters";
+  }
 }
 
 void check_numbers(const RoverState& state, const std::string& path) {

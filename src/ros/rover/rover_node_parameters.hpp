@@ -38,6 +38,8 @@ struct RoverNodeParameters {
   LoosenessSource looseness = LoosenessSource::automatic;
   double moisture_capacity = 0.3;
   double moisture_depth = 1;
+  double half_wet = 1.5;
+  double saturated = 0.15;
   std::string data_dir;
   std::string journal;
   bool micro_relief = false;
@@ -91,6 +93,10 @@ constexpr auto parameter_table(const RoverNodeParameters*) {
                 "The scenario's repose.moisture_capacity: moisture that a metre of ground can hold."),
       parameter("moisture_depth", &P::moisture_depth, 0.01, 100, "m",
                 "The scenario's repose.moisture_depth, down to which ground holds moisture."),
+      parameter("half_wet", &P::half_wet, 0.1, 10, "1",
+                "The scenario's repose.half_wet: strength of half-wet ground over that of dry."),
+      parameter("saturated", &P::saturated, 0.001, 10, "1",
+                "The scenario's repose.saturated: strength of saturated ground over that of dry."),
       parameter("data_dir", &P::data_dir,
                 "States of the rover lie below this folder; empty: desert_sim in ROS's own "
                 "folder ($ROS_HOME, or ~/.ros)."),

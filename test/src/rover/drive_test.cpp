@@ -125,6 +125,22 @@ TEST_P(SlipByLaw, IsMadeAndOdometryIsOffByIt) {
   }
 }
 
+TEST(RoverDrive, WetGroundIsAsFirmAsItIsTold) {
+  SmoothGround ground(plane(6), 5, 1);
+  const auto slip = [&](double moisture, const WetGroundParameters& wet) {
+    ground.moisture_ = moisture;
+    RoverParameters p;
+    p.wheel_law = WheelLaw::bekker;
+    Rover r(p, {}, "rover", wet);
+    r.place(0, 0, 0, ground);
+    drive(r, {0.2, 0, 0}, 10, ground);
+    return r.state().slip;
+  };
+  EXPECT_LT(slip(0.5, {3, 0.15}), slip(0.5, {}));
+  EXPECT_LT(slip(1, {1.5, 1}), slip(1, {}));
+  EXPECT_EQ(slip(0, {3, 1}), slip(0, {}));
+}
+
 INSTANTIATE_TEST_SUITE_P(Of, SlipByLaw, testing::Values(WheelLaw::light, WheelLaw::bekker),
                          [](const auto& kind) {
                            return std::string(wheel_laws[static_cast<int>(kind.param)]);

@@ -46,10 +46,11 @@ class SmoothGround : public GroundSource {
     GroundPoint p;
     p.sand_depth = sand_;
     p.looseness = looseness_;
+    p.moisture = moisture_;
     return p;
   }
   Height height_;
-  double sand_, looseness_;
+  double sand_, looseness_, moisture_ = 0;
 };
 
 inline Rover rover_of(const RoverParameters& parameters = {}) { return Rover(parameters, {}); }

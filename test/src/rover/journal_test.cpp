@@ -120,6 +120,31 @@ TEST(RoverRepeat, AJournalOfAnOlderVersionHasNoMicroRelief) {
   EXPECT_FALSE(read_rover_journal(folder.path("older")).micro_relief);
 }
 
+/// What moisture makes of the ground is part of the rover: its states and journals have it, unless it is the
+/// default, which those of earlier versions lack.
+TEST(RoverRepeat, OnOtherWetGroundItIsAnotherRover) {
+  const TemporaryFolder folder;
+  const Rover usual(noisy(), {}), firm(noisy(), {}, "rover", {3, 1.25});
+  EXPECT_EQ(usual.text().find("wet_ground"), std::string::npos);
+  EXPECT_NE(firm.text().find("half_wet: 3"), std::string::npos) << firm.text();
+  { RoverJournalWriter(folder.path("journal"), firm, false); }
+  const RoverJournal journal = read_rover_journal(folder.path("journal"));
+  EXPECT_EQ(journal.wet_ground.half_wet, 3);
+  EXPECT_EQ(journal.wet_ground.saturated, 1.25);
+  { RoverJournalWriter(folder.path("usual"), usual, false); }
+  EXPECT_EQ(read_rover_journal(folder.path("usual")).wet_ground.half_wet, 1.5);
+  folder.write("state", rover_state_bytes(firm));
+  folder.write("usual_state", rover_state_bytes(usual));
+  Rover wet = firm, dry = usual;
+  EXPECT_NE(
+      refusal([&] { load_rover(folder.path("state"), dry); }).find("wet_ground:', which this rover has not"),
+      std::string::npos);
+  EXPECT_NE(
+      refusal([&] { load_rover(folder.path("usual_state"), wet); }).find("wet_ground:', which it has not"),
+      std::string::npos);
+  load_rover(folder.path("state"), wet);
+}
+
 TEST(RoverRepeat, AJournalThatWasCutOffIsReadUpToThere) {
   const TemporaryFolder folder;
   const std::string path = folder.path("journal");

@@ -128,6 +128,8 @@ TEST(RoverLockstep, TheJournalLeadsToTheSameStateWithoutRos) {
   std::string file;
   ASSERT_TRUE(ros::param::get("/rover_lockstep/journal", file));
   desert_sim::RoverJournal journal = desert_sim::read_rover_journal(file);
+  EXPECT_EQ(journal.wet_ground.half_wet, 2.5) << "as the parameters of its node say";
+  EXPECT_EQ(journal.wet_ground.saturated, 0.25);
   // What came before the last reset had terrains of its own.
   auto first = journal.events.begin();
   for (auto event = journal.events.begin(); event != journal.events.end(); ++event)
