@@ -111,7 +111,7 @@ Raster to_raster(const GridMap& map, const RasterOptions& options, const std::st
         throw_error(source, "layer ", in_quotes(map.layers[n]), ": has an infinite value");
       raster.values[(columns - 1 - column) * rows + (rows - 1 - row)] = value;
     }
-  warn_of_undeclared_nodata(cells, source);
+  if (!options.complete) warn_of_undeclared_nodata(cells, source);
   return raster;
 }
 

@@ -52,6 +52,7 @@ struct RasterOptions {
   double scale = 1, offset = 0;
   std::optional<double> nodata = {};  ///< a raw number that stands for missing data, besides the declared one
   RasterEncoding encoding = RasterEncoding::values;
+  bool complete = false;  ///< every cell has data: no number is suspected to stand for missing data
 };
 
 /// Which rasters may be read. By default files of the formats GeoTIFF, ESRI ASCII (AAIGrid), ENVI, PNG, EXR

@@ -117,16 +117,24 @@ Raster RasterFile::read(const RasterWindow& window) {
     }
   }
   reverse_rows(raster);
-  std::optional<double> told;
-  if (const std::optional<Frame> frame = find_frame(raster, !whole)) {
-    const int x = window.x + static_cast<int>(frame->cell % window.width);
-    read_row(window.y + static_cast<int>(frame->cell / window.width), x, 1, raw.data(), valid.data());
-    told = raw[0];
-    warn_of_frame(path_, *frame, *told);
-  }
-  warn_of_undeclared_nodata(cells, path_, told);  // which may be why values are refused
+  if (!options_.complete) warn_of_missing_data(raster, window, cells);  // which may be why values are refused
   check_values(path_, raster, window);
   return raster;
+}
+
+void RasterFile::warn_of_missing_data(const Raster& raster, const RasterWindow& window,
+                                      const CellValues& cells) {
+  std::optional<double> told;
+  const bool part = window.width != header_.width || window.height != header_.height;
+  if (const std::optional<Frame> frame = find_frame(raster, part)) {
+    double raw = 0;
+    unsigned char valid = 0;
+    read_row(window.y + static_cast<int>(frame->cell / window.width),
+             window.x + static_cast<int>(frame->cell % window.width), 1, &raw, &valid);
+    told = raw;
+    warn_of_frame(path_, *frame, raw);
+  }
+  warn_of_undeclared_nodata(cells, path_, told);
 }
 
 std::unique_ptr<RasterFile> open_raster(const std::string& path, const RasterOptions& options,

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "src/io/cell_values.hpp"
 #include "src/io/declared_values.hpp"
 #include "src/io/raster.hpp"
 
@@ -22,9 +23,9 @@ class RasterFile {
   /// The raster without its values.
   const Raster& header() const { return header_; }
   /// Reads the cells of a window, which must lie in the raster, and logs a warning for numbers and for a
-  /// frame around the raster that seem to stand for missing data. Throws ConfigError for what is wrong with
-  /// them (see read_raster()), and before any is read if the memory does not hold them, or if they are far
-  /// more than the file can have.
+  /// frame around the raster that seem to stand for missing data, unless it is complete. Throws ConfigError
+  /// for what is wrong with them (see read_raster()), and before any is read if the memory does not hold
+  /// them, or if they are far more than the file can have.
   Raster read(const RasterWindow& window);
   Raster read() { return read({0, 0, header_.width, header_.height}); }
 
@@ -45,6 +46,8 @@ class RasterFile {
   std::uint64_t file_bytes_ = 0;       ///< 0 if they are not all in one file
 
  private:
+  void warn_of_missing_data(const Raster& raster, const RasterWindow& window, const CellValues& cells);
+
   const std::string path_;
 };
 

@@ -164,7 +164,7 @@ RasterField field_of(Raster r) {
 }  // namespace
 
 RasterOptions raster_options(const RasterRequest& q) {
-  return {q.band, q.scale, q.offset, q.nodata, q.encoding};
+  return {q.band, q.scale, q.offset, q.nodata, q.encoding, q.complete};
 }
 
 RasterField resample_to_request(Raster r, const RasterRequest& q) {

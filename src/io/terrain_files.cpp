@@ -138,6 +138,7 @@ LayerWriter geotiff_writer(const std::string& projection) {
     SavedLayers saved;
     for (Layer layer : persistent_layers(s)) {
       RasterStep step;
+      step.complete = true;
       step.layer = info(layer).name;
       step.file = layer_file_name(step.layer, tag, ".tif");
       write_geotiff(folder + "/" + step.file, to_raster(s, *s.find(layer), projection));
@@ -153,6 +154,7 @@ LayerWriter png16_writer() {
     SavedLayers saved;
     for (Layer layer : persistent_layers(s)) {
       RasterStep step;
+      step.complete = true;
       step.layer = info(layer).name;
       step.file = layer_file_name(step.layer, tag, ".png");
       write_layer_png16(folder + "/" + step.file, *s.find(layer), s, step.scale, step.offset);

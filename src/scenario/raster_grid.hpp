@@ -26,6 +26,7 @@ struct RasterRequest {
   double scale = 1, offset = 0;
   std::optional<double> nodata;  ///< a raw value that stands for missing data, besides the declared one
   bool fill_nodata = false;      ///< fill nodata from neighbours; otherwise it is refused
+  bool complete = false;         ///< every cell has data: none is suspected to have none
   // The grid to resample to; with width 0 only the raster's own grid is asked for, and no values are read.
   int width = 0, height = 0;
   double cell_size = 0, origin_x = 0, origin_y = 0;

@@ -230,6 +230,7 @@ class Builder {
     request.encoding = p.encoding;
     request.nodata = p.nodata;
     request.fill_nodata = p.fill_nodata;
+    request.complete = p.complete;
     request.width = s_.grid.width;
     request.height = s_.grid.height;
     request.cell_size = s_.grid.cell_size;

@@ -238,6 +238,7 @@ struct RasterStep {
   RasterEncoding encoding = RasterEncoding::values;
   std::optional<double> nodata;
   bool fill_nodata = false;
+  bool complete = false;
   bool stretch = false;
 };
 constexpr auto parameter_table(const RasterStep*) {
@@ -265,6 +266,9 @@ constexpr auto parameter_table(const RasterStep*) {
           "given: none."),
       parameter("fill_nodata", &P::fill_nodata,
                 "Whether cells without data are filled from their neighbours; otherwise they are refused."),
+      parameter("complete", &P::complete,
+                "Whether every cell has data, as in saved terrains; otherwise a warning tells numbers that "
+                "seem to stand for missing data."),
       parameter("stretch", &P::stretch,
                 "Whether the raster is stretched over the grid, wherever it lies; always so if it is not "
                 "georeferenced."));

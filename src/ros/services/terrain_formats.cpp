@@ -29,6 +29,7 @@ LayerWriter bag_writer(const TerrainState& state, const std::string& frame, cons
       step.layer = info(layer).name;
       step.file = file;
       step.band = static_cast<int>(layers.size());
+      step.complete = true;
       saved.steps.push_back(step);
     }
     write_grid_map(folder + "/" + file, topic, grid_map(state, frame, layers, whole_window(s)));

@@ -175,13 +175,16 @@ TEST_F(RasterAccessTest, OnlyTheWindowThatTheGridCoversIsRead) {
   std::vector<float> values(400 * 400);
   for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<float>(i % 97);
   const std::string file = make("data/a.tif", "GTiff", 400, 400, GDT_Float32, values, {0, 1, 0, 400, 0, -1});
-  const RasterField whole = gdal_raster_loader()({file, 1, 1, 0, {}, false, 50, 40, 1, 20.0, 340, false});
+  const RasterField whole =
+      gdal_raster_loader()({file, 1, 1, 0, {}, false, false, 50, 40, 1, 20.0, 340, false});
   fs::resize_file(file, fs::file_size(file) / 2);
   EXPECT_NE(refusal(file), "");
-  const RasterField north = gdal_raster_loader()({file, 1, 1, 0, {}, false, 50, 40, 1, 20.0, 340, false});
+  const RasterField north =
+      gdal_raster_loader()({file, 1, 1, 0, {}, false, false, 50, 40, 1, 20.0, 340, false});
   EXPECT_EQ(north.values, whole.values);
   EXPECT_EQ(north.values[0], static_cast<float>((59 * 400 + 20) % 97)) << "south-west corner";
-  EXPECT_THROW(gdal_raster_loader()({file, 1, 1, 0, {}, false, 50, 40, 1, 20.0, 0, false}), ConfigError);
+  EXPECT_THROW(gdal_raster_loader()({file, 1, 1, 0, {}, false, false, 50, 40, 1, 20.0, 0, false}),
+               ConfigError);
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include "src/io/raster_loader.hpp"
 #include "src/simulation/session.hpp"
 #include "test/support/full_disk.hpp"
+#include "test/support/log_lines.hpp"
 #include "test/support/temporary_folder.hpp"
 #include "test/support/world.hpp"
 
@@ -74,6 +75,31 @@ TEST_P(TerrainFiles, ComeBackWithinTheFormatsRounding) {
   other->step();
   other->apply(command::Reset{});
   EXPECT_EQ(other->simulation().state().hash(), start) << "a reset goes back to it";
+}
+
+/// Its highest number is 65535, and the block lies far from all others; who gives the same files without
+/// saying that they are complete is warned.
+TEST_P(TerrainFiles, AreKnownToMissNoData) {
+  auto s = session(
+      "grid: {width: 30, height: 20}\nterrain: [uniform: {layer: bedrock, value: 1}, column: {layer: "
+      "bedrock, x: "
+      "9, y: 9, size_x: 3, size_y: 3, height: 900}]\n");
+  save(*s, "a");
+  const std::string saved = read_file(file_);
+  const auto warnings = [&] {
+    test::LogLines log;
+    session(world)->apply(command::LoadScenario{file_, true, 0});
+    return std::count_if(log.lines.begin(), log.lines.end(), [](const std::string& line) {
+      return line.find("stand for missing data") != std::string::npos;
+    });
+  };
+  EXPECT_EQ(warnings(), 0);
+  std::string unsaid = saved;
+  for (std::size_t at; (at = unsaid.find("complete: true")) != std::string::npos;)
+    unsaid.replace(at, 14, "complete: false");
+  ASSERT_NE(unsaid, saved);
+  folder_.write("terrain.yaml", unsaid);
+  EXPECT_GT(warnings(), 0);
 }
 
 TEST_P(TerrainFiles, OfAScenarioWhoseNameHasALineBreakHaveOneComment) {
