@@ -69,7 +69,9 @@ std::string describe_parameters() {
          "`set_wind_schedule`, `edit_wind`, `edit_terrain` or `edit_plants` is applied as the service of "
          "that "
          "name "
-         "would. What is refused when it is due is an error in the log, and the run goes on.\n\n"
+         "would. What is refused when it is due is an error in the log, and the run goes on. `edit_terrain` "
+         "with `shape: patch` takes a raster, relative to the scenario's folder: `image_file`, with "
+         "`image_scale` for heights.\n\n"
          "Both may have `every: [s]`, from time step to time step at most, and `until: [s]`: they happen "
          "again and "
          "again. `desert_run --script FILE` adds a list of such entries from a file.\n";

@@ -67,6 +67,8 @@ std::vector<std::string> raster_paths(const Scenario& s) {
   for (const TerrainStep& step : s.terrain)
     if (const auto* raster = std::get_if<RasterStep>(&step); raster && !raster->file.empty())
       paths.push_back(raster_path(s, raster->file));
+  for (const TimelineEntry& entry : s.timeline)
+    if (const std::string file = timeline_raster(entry); !file.empty()) paths.push_back(raster_path(s, file));
   return paths;
 }
 

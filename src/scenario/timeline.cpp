@@ -209,6 +209,13 @@ void emit_settings(YAML::Emitter& out, const TimelineEntry& entry) {
 
 }  // namespace
 
+std::string timeline_raster(const TimelineEntry& entry) {
+  constexpr const char* key = "image_file";
+  if (entry.command.find(key) == std::string::npos) return "";
+  const YAML::Node file = YAML::Load(entry.command)[key];
+  return !file ? "" : file.IsScalar() ? file.Scalar() : "?";
+}
+
 void emit_timeline(YAML::Emitter& out, const std::vector<TimelineEntry>& timeline) {
   out << YAML::Key << "timeline" << YAML::Value << YAML::BeginSeq;
   for (const TimelineEntry& entry : timeline) {

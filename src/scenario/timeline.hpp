@@ -85,6 +85,9 @@ void check_ramp(const Scenario& scenario, const Ramp& ramp, double time, const s
 std::vector<Ramp> extract_ramps(const Scenario& scenario, std::vector<std::string>& settings, double time,
                                 double duration);
 
+/// The file that the entry's command names as `image_file`; empty: none.
+std::string timeline_raster(const TimelineEntry& entry);
+
 /// `key` names the list in errors.
 std::vector<TimelineEntry> read_timeline(const YAML::Node& list, const std::string& key,
                                          ValidationErrors& errors);

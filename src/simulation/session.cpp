@@ -12,6 +12,7 @@
 #include "src/scenario/wind_series_file.hpp"
 #include "src/scenario/yaml_parameters.hpp"
 #include "src/simulation/checkpoint.hpp"
+#include "src/simulation/editing/timeline_rasters.hpp"
 #include "src/simulation/processes/settings_without_effect.hpp"
 #include "src/simulation/start.hpp"
 
@@ -40,6 +41,7 @@ Session::Session(const Scenario& scenario, const RasterLoader& load_raster, cons
   Scenario resolved = scenario;
   resolve_grid(resolved, load_raster_);
   read_wind_series(resolved);
+  read_timeline_rasters(resolved, load_raster_);
   exec_ = make_exec(backend, threads, &backend_choice_);
   replace_simulation(simulation_at_start(*exec_, resolved, load_raster_));
   warn_of_settings_without_effect(resolved);
@@ -127,6 +129,7 @@ std::uint64_t Session::load_scenario(const command::LoadScenario& command) {
   }
   resolve_grid(next, load_raster_);
   read_wind_series(next, folder);
+  read_timeline_rasters(next, load_raster_);
   auto simulation = simulation_at_start(*exec_, next, load_raster_, folder);
   const std::uint64_t hash = simulation->state().hash();
   if (command.hash != 0 && command.hash != hash)

@@ -11,6 +11,7 @@
 #include "src/io/raster_loader.hpp"
 #include "src/ros/services/request_fields.hpp"
 #include "src/ros/services/requests.hpp"
+#include "src/simulation/commands/patch_raster.hpp"
 
 namespace desert_sim {
 
@@ -132,33 +133,9 @@ command::Patch patch_of(const sensor_msgs::Image& image, double scale) {
   return patch;
 }
 
-/// A raster below the data folder as a patch: its values times `scale`, or from 0 at its lowest to 1 at its
-/// highest.
+/// A raster below the data folder as a patch; see patch_of_raster().
 command::Patch patch_of_file(const DataFolder& files, const std::string& name, std::optional<double> scale) {
-  RasterRequest request;
-  request.path = files.for_reading(name);
-  const RasterLoader load = gdal_raster_loader({files.path(), false});
-  const RasterField grid = load(request);
-  const auto cells = static_cast<long long>(grid.width) * grid.height;
-  if (cells > command::Patch::max_pixels)
-    throw ConfigError("image_file: " + in_quotes(name) + " has " + std::to_string(grid.width) + " x " +
-                      std::to_string(grid.height) + " cells (allowed: at most " +
-                      std::to_string(command::Patch::max_pixels) + " in all)");
-  request.width = grid.width, request.height = grid.height;
-  request.cell_size = grid.cell_size, request.origin_x = grid.origin_x, request.origin_y = grid.origin_y;
-  const std::vector<float> values = load(request).values;
-  const auto [low, high] = std::minmax_element(values.begin(), values.end());
-  const double range = static_cast<double>(*high) - *low;
-  command::Patch patch{grid.width, grid.height, {}};
-  patch.values.reserve(values.size());
-  for (int row = grid.height - 1; row >= 0; --row)  // a patch begins in the north, as a picture does
-    for (int column = 0; column < grid.width; ++column) {
-      const double value = values[static_cast<std::size_t>(row) * static_cast<std::size_t>(grid.width) +
-                                  static_cast<std::size_t>(column)];
-      patch.values.push_back(
-          static_cast<float>(scale ? value * *scale : (range > 0 ? (value - *low) / range : 1)));
-    }
-  return patch;
+  return patch_of_raster(gdal_raster_loader({files.path(), false}), files.for_reading(name), name, scale);
 }
 
 void set_patch(const EditTerrainRequest& request, const DataFolder& files, command::EditTerrain& command) {

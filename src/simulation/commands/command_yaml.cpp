@@ -148,17 +148,10 @@ command::EditWind read(Type<command::EditWind>, const YAML::Node& node, const st
   return edit;
 }
 
-/// A patch's values as base64 of 32-bit floats: every bit is kept.
 void emit(YAML::Emitter& out, const command::EditTerrain& edit) {
   yaml::emit_parameters(out, static_cast<const command::EditParameters&>(edit));
   emit_points(out, edit.points);
-  const command::Patch& patch = edit.patch;
-  if (patch.values.empty()) return;
-  out << YAML::Key << "patch_columns" << YAML::Value << patch.columns;
-  out << YAML::Key << "patch_rows" << YAML::Value << patch.rows;
-  out << YAML::Key << "patch" << YAML::Value << YAML::DoubleQuoted
-      << YAML::EncodeBase64(reinterpret_cast<const unsigned char*>(patch.values.data()),
-                            patch.values.size() * sizeof(float));
+  if (!edit.patch.values.empty()) emit_patch(out, edit.patch);
 }
 
 command::Patch read_patch(const YAML::Node& node, const std::string& source) {
@@ -258,6 +251,14 @@ Command read_named(const std::string& name, const YAML::Node& node, const std::s
 }
 
 }  // namespace
+
+void emit_patch(YAML::Emitter& out, const command::Patch& patch) {
+  out << YAML::Key << "patch_columns" << YAML::Value << patch.columns;
+  out << YAML::Key << "patch_rows" << YAML::Value << patch.rows;
+  out << YAML::Key << "patch" << YAML::Value << YAML::DoubleQuoted
+      << YAML::EncodeBase64(reinterpret_cast<const unsigned char*>(patch.values.data()),
+                            patch.values.size() * sizeof(float));
+}
 
 void emit_command(YAML::Emitter& out, const Command& command) {
   std::visit(
