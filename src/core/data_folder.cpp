@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "src/core/folder.hpp"
+#include "src/core/near_name.hpp"
 #include "src/core/quoted.hpp"
 
 namespace desert_sim {
@@ -67,12 +68,21 @@ std::string DataFolder::for_reading(const std::string& name) const {
     const fs::path root = fs::canonical(path_);
     const fs::path file = fs::weakly_canonical(root / relative);
     require_below(root, file, name);
-    if (!fs::exists(file)) throw ConfigError(in_quotes(name) + ": no such file exists in " + root.string());
+    if (!fs::exists(file))
+      throw ConfigError(in_quotes(name) + ": no such file exists in " + root.string() + near_name(file));
     if (!fs::is_regular_file(file)) throw ConfigError(in_quotes(name) + ": is not a file");
     return file.string();
   } catch (const fs::filesystem_error& e) {
     throw ConfigError(in_quotes(name) + ": the file system reports \"" + e.code().message() + "\" (in " +
                       path_ + ")");
+  }
+}
+
+bool DataFolder::has_file(const std::string& name) const {
+  try {
+    return !for_reading(name).empty();
+  } catch (const ConfigError&) {
+    return false;
   }
 }
 

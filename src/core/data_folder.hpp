@@ -51,6 +51,8 @@ class DataFolder {
   /// name; for_reading() also if there is none. What opens the path for reading later has to make sure itself
   /// that no link was put in the way meanwhile: see InputFile.
   std::string for_reading(const std::string& name) const;
+  /// Whether for_reading() would return the path.
+  bool has_file(const std::string& name) const;
   /// Whether it has a folder of this name; false also where for_reading() would refuse the name.
   bool has_folder(const std::string& name) const;
   /// Also creates the folders that are missing.

@@ -10,6 +10,7 @@
 
 #include "src/core/error.hpp"
 #include "src/core/folder.hpp"
+#include "src/core/near_name.hpp"
 #include "src/core/quoted.hpp"
 
 namespace desert_sim {
@@ -22,9 +23,9 @@ namespace {
 constexpr int reading = O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC;
 
 [[noreturn]] void throw_error(const std::string& path, int error) {
-  throw ConfigError(
-      path + ": " +
-      (error == ENOENT ? "no such file exists" : std::string("cannot be opened: ") + std::strerror(error)));
+  throw ConfigError(path + ": " +
+                    (error == ENOENT ? "no such file exists" + near_name(path)
+                                     : std::string("cannot be opened: ") + std::strerror(error)));
 }
 
 /// Opens a file below `folder`, whose own path is trusted.
@@ -35,8 +36,14 @@ int open_below(const std::string& folder, const std::string& path) {
   const fs::path file = fs::canonical(path, error);
   // The reason why a file outside cannot be opened would tell something about it.
   const fs::path known = error ? fs::absolute(path).lexically_normal() : file;
-  if (!is_below(root, known) && !is_below(fs::absolute(folder).lexically_normal(), known))
+  if (!is_below(root, known) && !is_below(fs::absolute(folder).lexically_normal(), known)) {
+    // Whether the working folder has a file of this name is not told either.
+    const fs::path relative = fs::path(path).lexically_normal();
+    if (relative.is_relative() && *relative.begin() != "..")
+      throw ConfigError(in_quotes(path) + ": no such file exists below " + root.string() +
+                        near_name(root / relative));
     throw ConfigError(in_quotes(path) + ": is not below " + root.string());
+  }
   if (error) throw_error(path, error.value());
   const auto check_opened = [&path](int opened) {
     // ENOTDIR and ELOOP: a link has come in the way after the links were followed.

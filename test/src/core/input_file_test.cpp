@@ -59,6 +59,25 @@ TEST_F(InputFiles, FollowLinksInsideTheFolderAndNoneThatLeadOut) {
   expect_says(refusal([&] { read("deep/up/secret"); }), "is not below");
 }
 
+TEST_F(InputFiles, ThatAreMissingHaveNamesThatAreNear) {
+  folder_.write("data/deep/terrain-bedrock-1.tif", "");
+  folder_.write("secret", "outside");
+  const auto reason = [this](const std::string& name) { return refusal([&] { read(name); }); };
+  expect_says(reason("deep/terrain-bedrok-1.tif"),
+              "no such file exists; did you mean 'terrain-bedrock-1.tif'?");
+  expect_says(reason("deep/bedrock.tif"), "did you mean 'terrain-bedrock-1.tif'?");
+  expect_says(reason("dep/bedrock.tif"), "did you mean 'deep'?");
+  EXPECT_EQ(reason("deep/b.tif").find("did you mean"), std::string::npos);
+  expect_says(refusal([&] { DataFolder(data()).for_reading("deep/bedrock"); }),
+              "did you mean 'terrain-bedrock-1.tif'?");
+  // As a scenario names it which does not lie beside it:
+  const std::string relative = refusal([&] { read_file("deep/bedrock.tif", data()); });
+  expect_says(relative, "'deep/bedrock.tif': no such file exists below " + fs::canonical(data()).string());
+  expect_says(relative, "did you mean 'terrain-bedrock-1.tif'?");
+  EXPECT_EQ(refusal([&] { read_file("../secrets", data()); }).find("did you mean"), std::string::npos);
+  EXPECT_EQ(reason("../secrets").find("did you mean"), std::string::npos) << "what lies outside is not told";
+}
+
 /// Swaps a file and a link that leads out as fast as it can while the file is opened again and again, until
 /// it was read and refused often enough.
 TEST_F(InputFiles, ALinkThatIsSwappedInMeanwhileIsNotFollowed) {
