@@ -7,6 +7,8 @@
 #include <QDirIterator>
 #include <cstdlib>
 
+#include "src/scenario/scenario_names.hpp"
+
 namespace desert_sim {
 
 namespace {
@@ -32,6 +34,15 @@ QStringList installed(const QString& folder) {
 
 }  // namespace
 
+void name_apart(SceneLists& lists) {
+  for (QString& name : lists.installed) {
+    const int saved = lists.scenarios.indexOf(name);
+    if (saved < 0) continue;
+    lists.scenarios[saved] += QString("/") + saved_scenario_file;
+    name = QString::fromStdString(installed_scenario_uri(name.toStdString()));
+  }
+}
+
 SceneLists list_folder(const std::string& data_dir) {
   const QDir root(QString::fromStdString(data_dir));
   SceneLists lists;
@@ -41,7 +52,7 @@ SceneLists list_folder(const std::string& data_dir) {
     const QString name = root.relativeFilePath(files.next());
     const QFileInfo file(name);
     if (file.fileName() == "terrain.yaml" && file.path() != ".") lists.terrains << file.path();
-    const bool whole = file.fileName() == "scenario.yaml" && file.path() != ".";
+    const bool whole = file.fileName() == saved_scenario_file && file.path() != ".";
     if (file.suffix() == "yaml" || file.suffix() == "yml") lists.scenarios << (whole ? file.path() : name);
     if (file.suffix() == "bag") lists.terrains << name;
     if (file.suffix() == "ckpt" && !file.fileName().startsWith("state-")) lists.checkpoints << name;
@@ -58,6 +69,7 @@ SceneLists list_scenes(const std::string& node) {
   ros::param::get(node + "/data_dir", data_dir);  // stays empty if the node has none, or is not there
   SceneLists lists = list_folder(data_dir.empty() ? default_data_dir().toStdString() : data_dir);
   lists.installed = installed("scenarios");
+  name_apart(lists);
   return lists;
 }
 

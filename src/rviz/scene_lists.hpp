@@ -20,6 +20,9 @@ SceneLists list_scenes(const std::string& node);
 /// The presets of species, of config/species.
 QStringList list_species();
 
+/// Gives a name that means both an installed scenario and a saved one as the node takes it for either.
+void name_apart(SceneLists& lists);
+
 /// The lists of one ~data_dir, without `installed`.
 SceneLists list_folder(const std::string& data_dir);
 

@@ -3,6 +3,7 @@
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
+#include <filesystem>
 
 #include "kernels/field/layers.hpp"
 #include "src/core/did_you_mean.hpp"
@@ -12,6 +13,7 @@
 #include "src/scenario/former_keys.hpp"
 #include "src/scenario/growth_curves.hpp"
 #include "src/scenario/rover_presets.hpp"
+#include "src/scenario/scenario_names.hpp"
 #include "src/scenario/seed_parameter.hpp"
 #include "src/scenario/wind_feature_lists.hpp"
 #include "src/scenario/yaml_document.hpp"
@@ -189,6 +191,9 @@ Scenario load_scenario(const std::string& path, const Settings& settings, const 
   const bool saved = begins_with(saved_terrain_comment) || begins_with(saved_scenario_comment);
   Scenario s = parse_with_settings(saved ? migrated(text, path) : text, path, parent_folder(path), settings);
   s.name = base_name(path);
+  // All files of scenarios that were saved with their state have one name; those of their folders differ.
+  if (begins_with(saved_scenario_comment) && std::filesystem::path(path).filename() == saved_scenario_file)
+    s.name = std::filesystem::absolute(path).lexically_normal().parent_path().filename().string();
   return s;
 }
 

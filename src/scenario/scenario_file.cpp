@@ -8,6 +8,7 @@
 #include "src/core/error.hpp"
 #include "src/core/joined.hpp"
 #include "src/core/package_folder.hpp"
+#include "src/core/quoted.hpp"
 
 namespace desert_sim {
 
@@ -18,6 +19,13 @@ namespace {
 bool ends_with(const std::string& text, const std::string& ending) {
   return text.size() >= ending.size() &&
          text.compare(text.size() - ending.size(), ending.size(), ending) == 0;
+}
+
+/// The file of a saved scenario in a folder; empty if there is none.
+std::string saved_scenario_in(const std::string& folder) {
+  const fs::path file = fs::path(folder) / saved_scenario_file;
+  std::error_code error;
+  return fs::is_regular_file(file, error) ? file.string() : "";
 }
 
 }  // namespace
@@ -45,13 +53,25 @@ std::vector<std::string> installed_scenarios() {
 
 std::string installed_scenario_file(const std::string& name) {
   const std::vector<std::string> names = installed_scenarios();
-  if (!std::binary_search(names.begin(), names.end(), name)) return "";
-  return (fs::path(installed_scenario_folder()) / (name + ".yaml")).string();
+  const auto found = std::find_if(names.begin(), names.end(), [&name](const std::string& known) {
+    return name == known || name == installed_scenario_uri(known);
+  });
+  return found == names.end() ? "" : (fs::path(installed_scenario_folder()) / (*found + ".yaml")).string();
+}
+
+std::string two_meanings(const std::string& name, const std::string& other) {
+  return in_quotes(name) +
+         " is the name of an installed scenario and of a file (allowed: " + in_quotes(other) +
+         " for the file, " + in_quotes(installed_scenario_uri(name)) + " for the installed one)";
 }
 
 std::string scenario_file(const std::string& name) {
-  if (name.find('/') != std::string::npos || ends_with(name, ".yaml") || ends_with(name, ".yml")) return name;
   if (const std::string file = installed_scenario_file(name); !file.empty()) return file;
+  if (name.rfind(installed_scenario_start, 0) != 0 &&
+      (name.find('/') != std::string::npos || ends_with(name, ".yaml") || ends_with(name, ".yml"))) {
+    const std::string saved = saved_scenario_in(name);
+    return saved.empty() ? name : saved;
+  }
   if (installed_scenario_folder().empty())
     throw ConfigError(
         "scenario '" + name +
@@ -64,7 +84,12 @@ std::string scenario_file(const std::string& name) {
 
 std::string scenario_argument(const std::string& argument) {
   std::error_code error;
-  return fs::is_regular_file(argument, error) ? argument : scenario_file(argument);
+  if (fs::is_regular_file(argument, error)) return argument;
+  const std::string saved = saved_scenario_in(argument);
+  if (saved.empty()) return scenario_file(argument);
+  if (!installed_scenario_file(argument).empty())
+    throw ConfigError("scenario " + two_meanings(argument, saved));
+  return saved;
 }
 
 }  // namespace desert_sim

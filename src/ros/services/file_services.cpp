@@ -10,6 +10,7 @@
 #include <ros/console.h>
 
 #include <chrono>
+#include <filesystem>
 #include <memory>
 #include <mutex>
 
@@ -29,12 +30,12 @@ namespace {
 
 constexpr const char* terrain_file = "terrain.yaml";  // in the folder of a saved terrain
 
-constexpr const char* state_file = "scenario.yaml";  // of a scenario saved with its state
+std::string saved_scenario_in(const std::string& folder) { return folder + "/" + saved_scenario_file; }
 
 /// A name that is no file's either may be that of an installed scenario, mistyped.
 std::string scenario_below_data_folder(const DataFolder& files, const std::string& name) {
   try {
-    return files.for_reading(name + (files.has_folder(name) ? std::string("/") + state_file : ""));
+    return files.for_reading(files.has_folder(name) ? saved_scenario_in(name) : name);
   } catch (const ConfigError& e) {
     if (name.find('/') != std::string::npos) throw;
     const std::string known = joined(installed_scenarios());
@@ -144,9 +145,19 @@ void save_terrain_folder(const ServiceContext& c, FilesLock& files, const SaveTe
            response.path.c_str());
 }
 
+/// The name would lead to the installed scenario when it is loaded.
+void require_not_installed(const std::string& name) {
+  const std::string folder = std::filesystem::path(name + "/").lexically_normal().parent_path().string();
+  if (!installed_scenario_file(folder).empty())
+    throw ConfigError("name: " + in_quotes(name) +
+                      " is that of an installed scenario (allowed: another one, such as " +
+                      in_quotes("my_" + folder) + ")");
+}
+
 void save_scenario_folder(const ServiceContext& c, FilesLock& files, const SaveScenarioRequest& request,
                           SaveScenarioResponse& response) {
-  const WritableFile file = c.files.for_writing(request.name + "/" + state_file);
+  require_not_installed(request.name);
+  const WritableFile file = c.files.for_writing(saved_scenario_in(request.name));
   const auto lock = files.lock();
   const ScenarioToSave saved = c.simulation.scenario_to_save(file.path()).get();
   file.write([&](const std::string& path) {
@@ -157,6 +168,22 @@ void save_scenario_folder(const ServiceContext& c, FilesLock& files, const SaveS
   response.state_hash = hash_text(saved.hash);
   ROS_INFO("The scenario was saved at step %lu to %s.", static_cast<unsigned long>(response.step),
            response.path.c_str());
+}
+
+/// The command that starts an installed scenario, or one below the data folder.
+command::LoadScenario named_scenario(const DataFolder& files, const LoadScenarioRequest& request) {
+  const std::string& name = request.name;
+  command::LoadScenario command;
+  command.path = installed_scenario_file(name);
+  command.settings = request.settings;
+  if (command.path.empty()) {
+    command.path = scenario_below_data_folder(files, name);
+    return command;
+  }
+  for (const std::string& other : {saved_scenario_in(name), "./" + name})
+    if (files.has_file(other)) throw ConfigError("name: " + two_meanings(name, other));
+  command.folder = installed_scenario_folder();
+  return command;
 }
 
 /// The command that starts a text; files that it names are looked up below the data folder.
@@ -202,14 +229,7 @@ void add_file_services(Services& services) {
       });
   services.add<LoadScenario>(
       "load_scenario", [&c, loader](const LoadScenarioRequest& request, LoadScenarioResponse& response) {
-        command::LoadScenario command;
-        command.path = installed_scenario_file(request.name);
-        if (command.path.empty())
-          command.path = scenario_below_data_folder(c.files, request.name);
-        else
-          command.folder = installed_scenario_folder();
-        command.settings = request.settings;
-        response.state_hash = loader->load_scenario(command);
+        response.state_hash = loader->load_scenario(named_scenario(c.files, request));
       });
   services.add<SaveScenario>("save_scenario",
                              [&c, files](const SaveScenarioRequest& request, SaveScenarioResponse& response) {

@@ -412,6 +412,28 @@ TEST_F(Run, TakesInstalledScenariosByName) {
   EXPECT_EQ(json(summary("named"), "seed"), "77") << "a file of exactly this name comes first";
 }
 
+TEST_F(Run, TakesTheFolderOfASavedScenario) {
+  for (const char* folder : {"kept", "barchan"})
+    folder_.write(std::string(folder) + "/scenario.yaml", "grid: {width: 9, height: 7}\nseed: 77\n");
+  run_cpu({path("kept"), "--steps", "1", "--out", path("out")});
+  EXPECT_EQ(json(summary("out"), "seed"), "77");
+  const auto named = [this](const std::string& name) {
+    return test::run_program(
+        "/usr/bin/env",
+        {"-C", path("."), "ROS_PACKAGE_PATH=" DESERT_SOURCE_DIR, program_, name, "--steps", "0", "--backend",
+         "cpu", "--quiet", "--out", path("out"), "--set", "grid.width=32", "--set", "grid.height=24"});
+  };
+  EXPECT_EQ(named("kept").status, 0);
+  const test::ProgramRun two = named("barchan");
+  EXPECT_EQ(two.status, 2);
+  EXPECT_NE(two.err.find("'barchan/scenario.yaml' for the file"), std::string::npos) << two.err;
+  EXPECT_EQ(named("barchan/scenario.yaml").status, 0);
+  EXPECT_EQ(json(summary("out"), "seed"), "77");
+  EXPECT_EQ(named("package://desert_sim/config/scenarios/barchan.yaml").status, 0);
+  EXPECT_EQ(json(summary("out"), "seed"), "1");
+  EXPECT_EQ(named("package://desert_sim/config/scenarios/barchans.yaml").status, 2);
+}
+
 TEST_F(Run, OfZeroStepsWritesTheStart) {
   run_cpu({scenario_, "--steps", "0", "--out", path("out")});
   EXPECT_EQ(json(summary("out"), "steps"), "0");

@@ -165,6 +165,52 @@ TEST_F(TerrainFiles, AScenarioIsSavedWholeAndGoesOn) {
   expect_refused<LoadScenario>("load_scenario", beginning("kept"), "'kept/scenario.yaml'", "no such file");
 }
 
+TEST_F(TerrainFiles, ANameMeansOneScenario) {
+  Listener<SimulationStatus> statuses("status");
+  const auto is_shown = [&](const std::string& scenario) {
+    return wait_until([&] { return statuses.last().scenario == scenario; });
+  };
+  step(2);
+  SaveScenario::Request save;
+  for (const char* name : {"nebkha", "nebkha/", "./nebkha"}) {
+    save.name = name;
+    expect_refused<SaveScenario>("save_scenario", save,
+                                 "name: '" + save.name + "' is that of an installed scenario", "'my_nebkha'");
+  }
+  EXPECT_FALSE(fs::exists(folder_ + "/nebkha"));
+  save.name = "my_nebkha";
+  const auto saved = call<SaveScenario>("save_scenario", save);
+  ASSERT_TRUE(saved.success) << saved.message;
+  EXPECT_EQ(call<LoadScenario>("load_scenario", beginning("my_nebkha")).state_hash, saved.state_hash);
+  EXPECT_TRUE(is_shown("my_nebkha")) << "and not that of its file";
+
+  fs::rename(folder_ + "/my_nebkha", folder_ + "/nebkha");
+  const std::string installed = "package://desert_sim/config/scenarios/nebkha.yaml";
+  expect_refused<LoadScenario>("load_scenario", beginning("nebkha"), "'nebkha/scenario.yaml'",
+                               "'" + installed + "'");
+  EXPECT_EQ(call<LoadScenario>("load_scenario", beginning("nebkha/scenario.yaml")).state_hash,
+            saved.state_hash);
+  EXPECT_NE(call<LoadScenario>("load_scenario", beginning(installed)).state_hash, saved.state_hash);
+  EXPECT_TRUE(is_shown("nebkha"));
+  fs::remove_all(folder_ + "/nebkha");
+  write("nebkha", "grid: {width: 9, height: 7}\n");
+  expect_refused<LoadScenario>("load_scenario", beginning("nebkha"), "'./nebkha'", "'" + installed + "'");
+  EXPECT_TRUE(call<LoadScenario>("load_scenario", beginning("./nebkha")).success);
+  fs::remove(folder_ + "/nebkha");
+  EXPECT_TRUE(call<LoadScenario>("load_scenario", beginning("nebkha")).success);
+}
+
+TEST_F(TerrainFiles, WhatIsMissingHasNamesThatAreNear) {
+  write("survey/terrain-bedrock-1.asc", "ncols 2\n");
+  NewScenario::Request request;
+  request.yaml = "grid: {from_raster: survey/bedrock.tif}\n";
+  expect_refused<NewScenario>("new_scenario", request,
+                              "'survey/bedrock.tif': no such file exists below " + folder_,
+                              "did you mean 'terrain-bedrock-1.asc'?");
+  expect_refused<LoadTerrain>("load_terrain", loading("strat"), "'strat/terrain.yaml'",
+                              "did you mean 'start'?");
+}
+
 TEST_F(TerrainFiles, AScenarioTakesSettings) {
   Listener<ElevationGrid> keyframes("elevation");
   LoadScenario::Request request = beginning("nebkha");
