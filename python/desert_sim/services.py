@@ -10,7 +10,8 @@ class SimulationError(RuntimeError):
     """
 
     def __init__(self, service, reason):
-        super().__init__("%s: %s" % (service, reason))
+        name = service.rsplit("/", 1)[-1] + ": "  # some reasons begin with the name of the command
+        super().__init__("%s: %s" % (service, reason[len(name):] if reason.startswith(name) else reason))
         self.service, self.reason = service, reason
 
 

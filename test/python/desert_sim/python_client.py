@@ -231,7 +231,9 @@ class Calls(Client):
             with self.assertRaises(desert_sim.SimulationError) as refused:
                 call()
             self.assertIn(reason, refused.exception.reason)
-            self.assertIn(refused.exception.service, str(refused.exception))
+            self.assertIn(refused.exception.service + ": ", str(refused.exception))
+            name = refused.exception.service.rsplit("/", 1)[1]
+            self.assertEqual(str(refused.exception).count(name + ": "), 1, refused.exception)
             self.assertTrue(refused.exception.service.startswith("/desert_sim/"))
         self.assertEqual(self.desert.step(0).state_hash, before)
         with self.assertRaisesRegex(TypeError, "'radus' is not one of.*did you mean 'radius'"):
