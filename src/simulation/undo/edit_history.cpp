@@ -107,7 +107,9 @@ Stroke& EditHistory::find(const std::string& name, bool undone, const std::strin
   if (found) return *found;
   const std::string verb = undone ? "redone" : "undone";
   if (!remembers()) throw ConfigError(what + ": no stroke is kept, because undo_memory is 0");
-  if (!newest) throw ConfigError(what + ": there is no stroke that can be " + verb);
+  if (!newest)
+    throw ConfigError(what + ": there is no stroke that can be " + verb +
+                      " (a load and a reset forget all strokes)");
   throw ConfigError(what + ": stroke: " + desert_sim::in_quotes(name) +
                     " is not the name of a stroke that can be " + verb +
                     (newest->name.empty() ? " (the newest has no name)"
