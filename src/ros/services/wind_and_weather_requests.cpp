@@ -239,7 +239,12 @@ command::SetParameters weather_command(const SetWeatherRequest& r) {
                                     {"wave_strength", r.wave_strength, {"water.wave_strength"}},
                                     {"wave_period", r.wave_period, {"water.wave_period"}}};
   require_finite(r.ramp, "ramp");
-  if (r.change.empty()) throw ConfigError("change: is empty (allowed: the names of the fields to change)");
+  const std::string known = joined(numbers, [](const Number& n) { return n.name; }) + ", sea, springs";
+  if (r.change.empty()) throw ConfigError("change: is empty (allowed: fields to change, of " + known + ")");
+  for (const std::string& field : r.change)
+    if (field != "sea" && field != "springs" &&
+        std::none_of(numbers.begin(), numbers.end(), [&](const Number& n) { return n.name == field; }))
+      throw ConfigError("change: " + not_one_of(field, known));
   const auto changes = [&](const std::string& field) {
     return std::find(r.change.begin(), r.change.end(), field) != r.change.end();
   };
@@ -258,11 +263,8 @@ command::SetParameters weather_command(const SetWeatherRequest& r) {
       choice_named<Sea>(seas, r.sea, "sea");
       command.settings.push_back("water.sea=" + r.sea);
       if (r.sea != "none") command.settings.push_back("water.enabled=true");
-    } else if (field == "springs") {
-      command.settings.push_back(springs_setting(r));
     } else {
-      const std::string known = joined(numbers, [](const Number& n) { return n.name; });
-      throw ConfigError("change: " + not_one_of(field, known + ", sea, springs"));
+      command.settings.push_back(springs_setting(r));
     }
   }
   return command;

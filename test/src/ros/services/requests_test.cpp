@@ -203,6 +203,26 @@ TEST(Requests, WindsRefuseWhatIsNotUsed) {
   }
 }
 
+TEST(Requests, SetWeatherNamesTheFieldsThereAre) {
+  SetWeatherRequest request;
+  const auto refusal = [&request]() -> std::string {
+    try {
+      weather_command(request);
+    } catch (const ConfigError& e) {
+      return e.what();
+    }
+    return "";
+  };
+  const std::string known =
+      "rain_rate, rain_share, evaporation, ground_evaporation, sea_level, wave_strength, "
+      "wave_period, sea, springs";
+  request.rain_rate = 0.001;
+  EXPECT_NE(refusal().find("change: is empty (allowed: fields to change, of " + known), std::string::npos)
+      << refusal();
+  request.change = {"rain"};
+  EXPECT_NE(refusal().find("change: 'rain' is not one of: " + known), std::string::npos) << refusal();
+}
+
 TEST(Requests, SetWeatherRefusesWhatItDoesNotChange) {
   SetWeatherRequest request;
   request.change = {"rain_rate"};
