@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """How much the desert depends on the time step: runs one small world a process at several steps for the same time.
 
-    test/bench/time_steps.py [--program desert_run] [--page doc/contributing/time_steps.md] [--only NAME]...
+    test/bench/time_steps.py [--program desert_run] [--page doc/notebook/time_steps.md] [--only NAME]...
 
 Each world has a quantity that its process changes. The page lists what that is at each step, relative to 1 s.
 Needs python3 with numpy and OpenCV.
@@ -164,9 +164,9 @@ def main():
     parser.add_argument("--page")
     parser.add_argument("--only", action="append")
     arguments = parser.parse_args()
-    lines = ["# Time steps", "",
+    lines = ["# How much do results depend on the time step?", "",
              "What a process does in the same time at several time steps, relative to steps of 1 s. Written by",
-             "`test/bench/time_steps.py --page doc/contributing/time_steps.md`. More than 5 % off is bold.",
+             "`test/bench/time_steps.py --page doc/notebook/time_steps.md`. More than 5 % off is bold.",
              "Longer ones are divided where sand or plants move. Hops and avalanches take turns, which is of first order: where much",
              "is lifted, steps of 1 s are 7 % from short ones, which leave less rock bare. What a film of rain wears by pipes goes",
              "with the step.", ""]
