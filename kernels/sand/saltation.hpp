@@ -77,7 +77,10 @@ constexpr auto parameter_table(const SaltationParameters*) {
   return std::make_tuple(
       parameter("enabled", &P::enabled,
                 "Whether the wind carries sand, where sand.model is hops, desertscape_2019 or continuum."),
-      parameter("lift", &P::lift, 0, 10, "m/s", "Sand lifted from an open cell a second (epsilon_s)."),
+      parameter(
+          "lift", &P::lift, 0, 10, "m/s",
+          "Sand lifted from an open cell a second (epsilon_s). The smaller, the slower and higher dunes are; "
+          "desertscape_2019 needs about 0.1."),
       parameter("hop_time", &P::hop_time, 0.001, 100, "s", "Time that a hop takes (T)."),
       parameter(
           "hop_spread", &P::hop_spread, 0, 100, "m",

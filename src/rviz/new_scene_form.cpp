@@ -55,6 +55,17 @@ void emit_ground(YAML::Emitter& out, const char* layer, double low, double high,
   out << YAML::EndMap << YAML::EndMap;
 }
 
+/// What random events need beside their model: by the defaults, those of hops, they flatten all dunes.
+void emit_desertscape(YAML::Emitter& out) {
+  const auto section = [&out](const char* name, const char* key, const char* value) {
+    out << YAML::Key << name << YAML::Value << YAML::Flow << YAML::BeginMap << YAML::Key << key << YAML::Value
+        << value << YAML::EndMap;
+  };
+  section("saltation", "lift", "0.1");
+  section("reptation", "slab", "0.01");
+  section("avalanching", "scheme", "multilevel");
+}
+
 }  // namespace
 
 NewSceneForm::NewSceneForm(NodeLink& link, QWidget* parent) : QGroupBox("New scene", parent), link_(link) {
@@ -113,7 +124,9 @@ std::string NewSceneForm::yaml() const {
       << "speed" << YAML::Value << speed_->value() << YAML::Key << "direction_deg" << YAML::Value
       << direction_->value() << YAML::EndMap;
   out << YAML::Key << "sand" << YAML::Value << YAML::Flow << YAML::BeginMap << YAML::Key << "model"
-      << YAML::Value << model_->currentText().toStdString() << YAML::EndMap << YAML::EndMap;
+      << YAML::Value << model_->currentText().toStdString() << YAML::EndMap;
+  if (model_->currentIndex() == static_cast<int>(SandModel::desertscape_2019)) emit_desertscape(out);
+  out << YAML::EndMap;
   return out.c_str();
 }
 

@@ -4,6 +4,7 @@
 #include <desert_sim/GetScenario.h>
 #include <yaml-cpp/yaml.h>
 
+#include "src/rviz/scene_lists.hpp"
 #include "test/src/rviz/panel_fixture.hpp"
 
 namespace rviz_test {
@@ -102,6 +103,22 @@ TEST_F(Authoring, ASceneBeginsFromTheForm) {
   EXPECT_EQ(now["grid"]["boundary"].as<std::string>(), "open");
   EXPECT_EQ(now["sand"]["model"].as<std::string>(), "werner");
   EXPECT_EQ(now["terrain"].size(), 2u);
+  list("new_model")->setCurrentText("desertscape_2019");
+  window_->click("begin_scene");
+  EXPECT_TRUE(scenario_has([](const YAML::Node& s) {
+    return s["sand"]["model"].as<std::string>() == "desertscape_2019" &&
+           s["saltation"]["lift"].as<float>() == 0.1f && s["reptation"]["slab"].as<float>() == 0.01f &&
+           s["avalanching"]["scheme"].as<std::string>() == "multilevel";
+  })) << window_->text("new_scene_error");
+}
+
+TEST_F(Authoring, ASavedScenarioWithAnInstalledNameHasAPathInTheList) {
+  desert_sim::SceneLists lists;
+  lists.installed = QStringList{"barchan", "oasis"};
+  lists.scenarios = QStringList{"mine", "oasis"};
+  name_apart(lists);
+  EXPECT_EQ(lists.installed, (QStringList{"barchan", "package://desert_sim/config/scenarios/oasis.yaml"}));
+  EXPECT_EQ(lists.scenarios, (QStringList{"mine", "oasis/scenario.yaml"}));
 }
 
 TEST_F(Authoring, AScenarioIsLoadedWithSettingsAndSavedWhole) {
