@@ -52,6 +52,14 @@ void add_plant(const Plant& plant, bool detailed, std::vector<Point>& corners) {
   add_cone(6, plant.x, plant.y, height_at(0.55), 0.9 * plant.radius, height_at(0.3), corners);
 }
 
+void add_plant(const Plant& plant, bool detailed, const Colour& colour, Mesh& mesh) {
+  std::vector<Point> corners;
+  corners.reserve(indices_of_plant(detailed));
+  add_plant(plant, detailed, corners);
+  for (std::size_t corner = 0; corner + 2 < corners.size(); corner += 3)
+    add_triangle(&corners[corner], colour, true, mesh);
+}
+
 std::vector<std::size_t> widest_plants(const std::vector<float>& radii, std::size_t count) {
   std::vector<std::size_t> numbers(radii.size());
   std::iota(numbers.begin(), numbers.end(), std::size_t{0});

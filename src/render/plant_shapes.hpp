@@ -21,6 +21,10 @@ struct Plant {
 /// Detailed: a trunk, and a crown of two cones with six sides. Else: a pyramid.
 void add_plant(const Plant& plant, bool detailed, std::vector<Point>& corners);
 
+/// The same with flat light on a crown of this colour, as indices_of_plant() indices of a mesh.
+void add_plant(const Plant& plant, bool detailed, const Colour& colour, Mesh& mesh);
+constexpr std::size_t indices_of_plant(bool detailed) { return 3 * (detailed ? 15 : 4); }
+
 /// The indices of the `count` widest plants, in ascending order; among plants of equal width the first ones
 /// count.
 std::vector<std::size_t> widest_plants(const std::vector<float>& radii, std::size_t count);

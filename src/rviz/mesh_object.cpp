@@ -4,6 +4,7 @@
 #include <OgreHardwareBufferManager.h>
 #include <OgreSceneNode.h>
 
+#include <algorithm>
 #include <cstddef>
 
 namespace desert_sim {
@@ -60,9 +61,9 @@ void MeshObject::reserve(std::size_t vertices, std::size_t indices) {
 }
 
 void MeshObject::set_mesh(const render::Mesh& mesh) {
-  setVisible(!mesh.empty());
+  count_ = mesh.indices.size();
+  draw_first(count_);
   mRenderOp.vertexData->vertexCount = mesh.vertices.size();
-  mRenderOp.indexData->indexCount = mesh.indices.size();
   if (mesh.empty()) {
     mRenderOp.vertexData->vertexBufferBinding->unsetAllBindings();
     mRenderOp.indexData->indexBuffer.reset();
@@ -80,8 +81,13 @@ void MeshObject::set_mesh(const render::Mesh& mesh) {
   parent_->needUpdate();
 }
 
+void MeshObject::draw_first(std::size_t indices) {
+  mRenderOp.indexData->indexCount = std::min(indices, count_);
+  setVisible(mRenderOp.indexData->indexCount > 0);
+}
+
 void MeshObject::_updateRenderQueue(Ogre::RenderQueue* queue) {
-  if (indices_) Ogre::SimpleRenderable::_updateRenderQueue(queue);
+  if (mRenderOp.indexData->indexCount > 0) Ogre::SimpleRenderable::_updateRenderQueue(queue);
 }
 
 Ogre::Real MeshObject::getBoundingRadius() const {

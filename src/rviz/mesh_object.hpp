@@ -21,6 +21,8 @@ class MeshObject : public Ogre::SimpleRenderable {
   /// Copies the mesh to OGRE's buffers, which stay the same while their sizes fit. An empty mesh hides the
   /// object and frees them.
   void set_mesh(const render::Mesh& mesh);
+  /// Draws only the first so many indices of the mesh; with 0 nothing.
+  void draw_first(std::size_t indices);
 
   /// An empty mesh is not drawn, even if somebody makes all objects of its node visible.
   void _updateRenderQueue(Ogre::RenderQueue* queue) override;
@@ -33,6 +35,7 @@ class MeshObject : public Ogre::SimpleRenderable {
   Ogre::SceneNode* const parent_;
   Ogre::HardwareVertexBufferSharedPtr vertices_;
   Ogre::HardwareIndexBufferSharedPtr indices_;
+  std::size_t count_ = 0;  ///< indices of the mesh
 };
 
 }  // namespace desert_sim

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "src/render/drawable.hpp"
-#include "src/render/plant_shapes.hpp"
 #include "src/render/wind_arrows.hpp"
 
 namespace desert_sim {
@@ -31,42 +31,20 @@ std::optional<render::Mesh> wind_mesh(const WindField& m, const LayerMap& ground
   return render::wind_arrows(wind, most, height);
 }
 
-namespace {
-
-bool is_drawable_plant(const Plants& m, std::size_t n) {
-  return m.species_index[n] < m.species.size() && is_drawable(m.x[n]) && is_drawable(m.y[n]) &&
-         is_drawable(m.z[n]) && is_drawable(m.radius[n]) && is_drawable(m.species[m.species_index[n]].stem);
-}
-
-}  // namespace
-
-PlantsMesh plants_mesh(const Plants& m, double corner_x, double corner_y, double vertical_exaggeration,
-                       int most) {
-  const double x = m.origin.position.x - corner_x, y = m.origin.position.y - corner_y;
-  if (!is_drawable(x) || !is_drawable(y)) return {};
-  const std::size_t count = std::min(
+render::PlantTiles plant_tiles(const Plants& m) {
+  render::PlantColumns columns;
+  columns.count = std::min(
       {m.x.size(), m.y.size(), m.z.size(), m.radius.size(), m.species_index.size(), m.health.size()});
-  std::vector<std::size_t> drawn;
-  std::vector<float> radii;
-  for (std::size_t n = 0; n < count; ++n) {
-    if (!is_drawable_plant(m, n)) continue;
-    drawn.push_back(n);
-    radii.push_back(m.radius[n]);
-  }
-  std::vector<render::Plant> plants;
-  std::vector<std::uint8_t> species;
-  for (const std::size_t chosen : render::widest_plants(radii, static_cast<std::size_t>(most))) {
-    const std::size_t n = drawn[chosen];
-    const std::uint8_t kind = m.species_index[n];
-    plants.push_back({x + static_cast<double>(m.x[n]), y + static_cast<double>(m.y[n]),
-                      static_cast<double>(m.z[n]), static_cast<double>(m.radius[n]),
-                      static_cast<double>(m.species[kind].stem), m.health[n] / 255.0});
-    species.push_back(kind);
-  }
-  render::PlantLook look;
-  look.vertical_exaggeration = vertical_exaggeration;
-  for (const PlantSpecies& one : m.species) look.colours.push_back(render::crown_colour(one.hue));
-  return {render::plants_mesh(plants, species, look), plants.size()};
+  columns.x = m.x.data();
+  columns.y = m.y.data();
+  columns.foot = m.z.data();
+  columns.radius = m.radius.data();
+  columns.kind = m.species_index.data();
+  columns.health = m.health.data();
+  std::vector<render::PlantKind> kinds;
+  for (const PlantSpecies& one : m.species)
+    kinds.push_back({static_cast<double>(one.stem), render::crown_colour(one.hue)});
+  return {columns, std::move(kinds)};
 }
 
 }  // namespace desert_sim

@@ -5,11 +5,11 @@
 #include <desert_sim/Plants.h>
 #include <desert_sim/WindField.h>
 
-#include <cstddef>
 #include <optional>
 
 #include "include/desert_sim/client/layer_map.hpp"
 #include "src/render/mesh.hpp"
+#include "src/render/plant_tiles.hpp"
 
 namespace desert_sim {
 
@@ -17,13 +17,7 @@ namespace desert_sim {
 /// whose sizes do not fit together, or whose numbers no desert has.
 std::optional<render::Mesh> wind_mesh(const WindField& wind, const LayerMap& ground, int most);
 
-struct PlantsMesh {
-  render::Mesh mesh;
-  std::size_t plants = 0;  ///< that are in it
-};
-/// The widest `most` plants, without those that no desert has. `corner_x`, `corner_y`: where the origin of
-/// the mesh lies in the terrain's frame [m].
-PlantsMesh plants_mesh(const Plants& plants, double corner_x, double corner_y, double vertical_exaggeration,
-                       int most);
+/// The plants, relative to the origin of the message, without those that no desert has.
+render::PlantTiles plant_tiles(const Plants& plants);
 
 }  // namespace desert_sim

@@ -70,7 +70,7 @@ void TerrainDisplay::onInitialize() {
   ripples_view_ = std::make_unique<RipplesView>(scene_->ground_material());
   near_ground_ = std::make_unique<NearGroundView>(*scene_);
   level_node_ = scene_node_->createChildSceneNode();
-  plants_view_ = std::make_unique<PlantsView>(level_node_);
+  plants_view_ = std::make_unique<PlantsView>(level_node_, scene_->ground_material());
   wind_view_ = std::make_unique<WindView>(scene_->node());
   legend_ = std::make_unique<Legend>();
   second_legend_ = std::make_unique<Legend>();
@@ -111,17 +111,18 @@ void TerrainDisplay::update(float, float) {
     else
       sky_->hide();
     const Ogre::Viewport* const viewport = camera ? camera->getViewport() : nullptr;
-    const double spent = render::RebuildQueue::steady_seconds() - begin;
     if (viewport) {
       const int height = viewport->getActualHeight();
+      update_plants(*camera, height);
       near_ground_->update(*camera, height, maps_, properties_->limits().pixels);
+      const double spent = render::RebuildQueue::steady_seconds() - begin;
       scene_->update(*camera, height, properties_->budget() - spent, incomplete);
     }
   }
   counts_ = scene_->counts();
   report();
   frame_milliseconds_ = 1e3 * (processor_seconds() - begin_of_work);
-  if (counts_.waiting > 0) context_->queueRender();
+  if (counts_.waiting > 0 || plants_view_->waiting() > 0) context_->queueRender();
 }
 
 // ---- properties ----
@@ -260,10 +261,20 @@ void TerrainDisplay::fit_view() {
 
 void TerrainDisplay::update_views() {
   const LayerMap& elevation = *maps_.at("elevation");
-  const LayerMap::Info& info = elevation.info();
-  plants_view_->update(info.origin_x, info.origin_y, vertical_exaggeration(), properties_->most_plants());
   wind_view_->update(elevation, properties_->most_arrows());
   ripples_view_->update();
+}
+
+void TerrainDisplay::update_plants(const Ogre::Camera& camera, int viewport_height) {
+  constexpr double share = 0.4;  // of the time of a frame
+  const LayerMap::Info& info = maps_.at("elevation")->info();
+  PlantsView::Settings settings;
+  settings.corner_x = info.origin_x;
+  settings.corner_y = info.origin_y;
+  settings.exaggeration = vertical_exaggeration();
+  settings.most = static_cast<std::size_t>(properties_->most_plants());
+  settings.seconds = share * properties_->budget();
+  plants_view_->update(camera, viewport_height, settings);
 }
 
 // ---- status ----

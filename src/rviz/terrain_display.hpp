@@ -32,6 +32,9 @@ class TerrainDisplay : public rviz::Display {
   Q_PROPERTY(qulonglong built_blocks READ built_blocks)     ///< since the start
   Q_PROPERTY(qlonglong triangles READ triangles)            ///< of the ground
   Q_PROPERTY(qlonglong near_triangles READ near_triangles)  ///< of the ground with micro-relief
+  Q_PROPERTY(qlonglong plants READ plants)                  ///< that are drawn as shapes
+  Q_PROPERTY(qlonglong known_plants READ known_plants)
+  Q_PROPERTY(int waiting_plants READ waiting_plants)  ///< tiles and strips of them that are not shown yet
 
  public:
   TerrainDisplay();
@@ -56,6 +59,9 @@ class TerrainDisplay : public rviz::Display {
   qulonglong built_blocks() const { return counts_.built; }
   qlonglong triangles() const { return counts_.triangles; }
   qlonglong near_triangles() const { return counts_.near_triangles; }
+  qlonglong plants() const { return plants_view_ ? static_cast<qlonglong>(plants_view_->shown()) : 0; }
+  qlonglong known_plants() const { return plants_view_ ? static_cast<qlonglong>(plants_view_->total()) : 0; }
+  int waiting_plants() const { return plants_view_ ? static_cast<int>(plants_view_->waiting()) : 0; }
 
  protected:
   void onInitialize() override;
@@ -75,6 +81,7 @@ class TerrainDisplay : public rviz::Display {
   bool place();
   void fit_view();
   void update_views();
+  void update_plants(const Ogre::Camera& camera, int viewport_height);
   void report();
   void set_status(const DisplayStatus& status);
 

@@ -80,7 +80,10 @@ void TerrainProperties::add_overlays(rviz::Property* parent) {
 void TerrainProperties::add_views(rviz::Property* parent) {
   plants_ =
       new BoolProperty("Plants", true, "Show the plants of ~plants.", parent, SIGNAL(views_changed()), this);
-  most_plants_ = new IntProperty("Most Plants", 10000, "The widest so many are shown.", plants_);
+  most_plants_ = new IntProperty(
+      "Most Plants", 10000,
+      "At most so many, the largest in the picture, are shown as shapes; all are a picture on the ground.",
+      plants_);
   most_plants_->setMin(1);
   wind_ = new BoolProperty("Wind", false,
                            "Show the wind of ~wind as arrows on the ground. A scenario about wind "

@@ -8,15 +8,11 @@
 
 #include "src/render/contour_lines.hpp"
 #include "src/rviz/materials.hpp"
+#include "src/rviz/view_scale.hpp"
 
 namespace desert_sim {
 
 namespace {
-
-Eigen::Matrix4d to_matrix(const Ogre::Matrix4& m) {
-  using RowByRow = Eigen::Matrix<Ogre::Real, 4, 4, Eigen::RowMajor>;
-  return Eigen::Map<const RowByRow>(m[0]).cast<double>();
-}
 
 /// The place of a block before it has a mesh: its heights are those of some of its cells.
 render::Box rough_box(const render::CellRectangle& cells, double cell_size,
@@ -95,9 +91,7 @@ void TerrainScene::keep_fine(std::vector<int>& levels) const {
 }
 
 render::View TerrainScene::view_of(const Ogre::Camera& camera, int viewport_height) const {
-  const Ogre::Matrix4 terrain(parent_->_getFullTransform());
-  return {to_matrix(camera.getProjectionMatrix()),
-          to_matrix(Ogre::Matrix4(camera.getViewMatrix(true)) * terrain), viewport_height};
+  return desert_sim::view_of(camera, viewport_height, *parent_);
 }
 
 std::vector<render::Box> TerrainScene::boxes_as_seen() const {

@@ -1,6 +1,7 @@
 #include "src/rviz/view_scale.hpp"
 
 #include <OgreCamera.h>
+#include <OgreNode.h>
 #include <OgrePlane.h>
 #include <OgreViewport.h>
 #include <rviz/view_controller.h>
@@ -10,6 +11,21 @@
 #include "src/rviz/placement.hpp"
 
 namespace desert_sim {
+
+namespace {
+
+Eigen::Matrix4d to_matrix(const Ogre::Matrix4& m) {
+  using RowByRow = Eigen::Matrix<Ogre::Real, 4, 4, Eigen::RowMajor>;
+  return Eigen::Map<const RowByRow>(m[0]).cast<double>();
+}
+
+}  // namespace
+
+render::View view_of(const Ogre::Camera& camera, int viewport_height, const Ogre::Node& frame) {
+  return {to_matrix(camera.getProjectionMatrix()),
+          to_matrix(Ogre::Matrix4(camera.getViewMatrix(true)) * Ogre::Matrix4(frame._getFullTransform())),
+          viewport_height};
+}
 
 float metres_per_pixel(const Ogre::Viewport& viewport, const Ogre::Vector3& point) {
   const Ogre::Camera& camera = *viewport.getCamera();

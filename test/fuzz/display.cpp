@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "include/desert_sim/client/layer_assembler.hpp"
+#include "src/render/plant_cover.hpp"
 #include "src/render/terrain_block.hpp"
 #include "src/rviz/map_windows.hpp"
 #include "src/rviz/message_meshes.hpp"
@@ -112,11 +113,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
     if (!map) return;
     const int most = data.PickValueInArray({0, 1, 100, 4000});
     if (const auto mesh = wind_mesh(wind(data), *map, most)) expect_finite(*mesh);
-    const MapInfo& info = map->info();
-    const PlantsMesh drawn = plants_mesh(plants(data), info.origin_x, info.origin_y,
-                                         data.ConsumeFloatingPointInRange(0.1, 100.0), most);
-    if (drawn.plants > static_cast<std::size_t>(most)) std::abort();
-    expect_finite(drawn.mesh);
+    const render::PlantTiles drawn = plant_tiles(plants(data));
+    const double exaggeration = data.ConsumeFloatingPointInRange(0.1, 100.0);
+    for (const render::PlantTile& tile : drawn.tiles())
+      expect_finite(drawn.mesh(tile, data.ConsumeBool(), exaggeration));
+    if (render::plant_cover(drawn).width > render::CoverPicture::most_pixels) std::abort();
   });
   return 0;
 }

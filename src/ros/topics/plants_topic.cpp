@@ -87,18 +87,20 @@ PlantsPtr plants_message(const TerrainState& state, const std::string& frame, in
     message->species.push_back(row);
   }
   message->total = list.plants.size();
-  const std::vector<std::size_t> numbers = widest_plants(list.plants, count);
-  for (auto* column : {&message->x, &message->y, &message->z, &message->radius})
-    column->reserve(numbers.size());
-  for (auto* column : {&message->species_index, &message->health}) column->reserve(numbers.size());
-  for (std::size_t n : numbers) {
-    const PlantRecord& plant = list.plants[n];
-    message->x.push_back(plant.x);
-    message->y.push_back(plant.y);
-    message->z.push_back(plant.z);
-    message->radius.push_back(plant.radius);
-    message->species_index.push_back(plant.species);
-    message->health.push_back(plant.health);
+  const bool all = list.plants.size() <= static_cast<std::size_t>(count);
+  const std::vector<std::size_t> chosen =
+      all ? std::vector<std::size_t>() : widest_plants(list.plants, count);
+  const std::size_t sent = all ? list.plants.size() : chosen.size();
+  for (auto* column : {&message->x, &message->y, &message->z, &message->radius}) column->resize(sent);
+  for (auto* column : {&message->species_index, &message->health}) column->resize(sent);
+  for (std::size_t n = 0; n < sent; ++n) {
+    const PlantRecord& plant = list.plants[all ? n : chosen[n]];
+    message->x[n] = plant.x;
+    message->y[n] = plant.y;
+    message->z[n] = plant.z;
+    message->radius[n] = plant.radius;
+    message->species_index[n] = static_cast<std::uint8_t>(plant.species);
+    message->health[n] = static_cast<std::uint8_t>(plant.health);
   }
   return message;
 }

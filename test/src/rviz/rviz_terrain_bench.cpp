@@ -1,23 +1,28 @@
 // Frames per second and milliseconds per frame of the display desert_sim/Terrain under OpenGL in software,
 // while a keyframe comes in and while updates come at 10 Hz; for grids of several sizes, and with the
-// displays that lie on the ground. Needs a ROS master and Xvfb:
+// displays that lie on the ground. With a number of plants, only while messages of so many come. Needs a ROS
+// master and Xvfb:
 //
-//     roscore & rosrun desert_sim rviz_terrain_bench [WIDTHxHEIGHT] [SECONDS] [SIDE]...
+//     roscore & rosrun desert_sim rviz_terrain_bench [WIDTHxHEIGHT] [plants=N] [SECONDS] [SIDE]...
 //
 // The size is that of the picture, 1024x768 if it is left out.
 
 #include <nav_msgs/OccupancyGrid.h>
 #include <nav_msgs/Path.h>
 #include <ros/ros.h>
+#include <rviz/view_controller.h>
+#include <rviz/view_manager.h>
 
 #include <algorithm>
 #include <atomic>
 #include <cstdio>
 #include <cstdlib>
 #include <ctime>
+#include <string>
 #include <thread>
 
 #include "test/src/rviz/made_up_node.hpp"
+#include "test/src/rviz/made_up_plants.hpp"
 #include "test/src/rviz/rviz_window.hpp"
 
 namespace rviz_test {
@@ -128,6 +133,69 @@ class Draped {
   std::vector<rviz::Display*> displays_;
 };
 
+/// Looks at the middle of the terrain from so far.
+void look_from(Window& window, int side, double distance) {
+  window.look_at(side);
+  window.manager().getViewManager()->getCurrent()->subProp("Distance")->setValue(distance);
+  window.run_frames(3);
+}
+
+/// Draws for some seconds without a new message, and as long with one each second.
+void measure_view(Window& window, rviz::Display* display, const ros::Publisher& publisher,
+                  const std::vector<desert_sim::PlantsPtr>& messages, double distance, double seconds) {
+  for (const bool sending : {false, true}) {
+    std::atomic<bool> stop{false};
+    std::thread sender([&] {
+      for (std::size_t n = 0; sending && !stop; ++n) {
+        publisher.publish(messages[n % messages.size()]);
+        for (int part = 0; part < 10 && !stop; ++part)
+          std::this_thread::sleep_for(std::chrono::milliseconds(100));
+      }
+    });
+    Figures all;
+    const std::uint64_t frames = window.frames();
+    const double begin = ros::WallTime::now().toSec();
+    window.for_each_frame([&] { all.milliseconds.push_back(number(display, "frame_milliseconds")); });
+    run(window, seconds);
+    window.for_each_frame(nullptr);
+    const double elapsed = ros::WallTime::now().toSec() - begin;
+    stop = true;
+    sender.join();
+    std::printf(
+        "  from %5.0f m, %-18s %5.1f frames/s  our work: %6.2f ms/frame, at most %7.2f ms  %6.0f shapes  "
+        "resident %4.0f MB\n",
+        distance, sending ? "a message a second" : "no message",
+        static_cast<double>(window.frames() - frames) / elapsed, all.mean(), all.most(),
+        number(display, "plants"), resident_megabytes());
+  }
+}
+
+void measure_plants(Window& window, int side, std::size_t count, double seconds) {
+  const std::string name = "/plants" + std::to_string(side);
+  MadeUpNode node(name);
+  ros::NodeHandle handle;
+  const ros::Publisher publisher = handle.advertise<desert_sim::Plants>(name + "/plants", 1, true);
+  rviz::Display* const display = window.add_terrain(name + "/elevation");
+  window.look_at(side);
+  node.keyframe(side, side, dunes);
+  window.run_until(
+      [&] { return number(display, "triangles") > 0 && number(display, "waiting_blocks") == 0; });
+  std::vector<desert_sim::PlantsPtr> messages;
+  for (int moment = 0; moment < 2; ++moment) messages.push_back(made_up_plants(count, side, moment));
+  std::printf("%5d  %zu plants; resident, with two messages of them: %.0f MB\n", side, count,
+              resident_megabytes());
+  for (const double distance : {1.1 * side, 0.2 * side, 40.0}) {
+    look_from(window, side, distance);
+    publisher.publish(messages.front());
+    run(window, 3);
+    measure_view(window, display, publisher, messages, distance, seconds);
+    if (const char* folder = std::getenv("DESERT_PICTURES"))
+      window.save(std::string(folder) + "/plants_from_" + std::to_string(static_cast<int>(distance)) +
+                  ".png");
+  }
+  window.remove(display);
+}
+
 void measure(Window& window, int side, double seconds) {
   const std::string name = "/bench" + std::to_string(side);
   MadeUpNode node(name);
@@ -167,6 +235,8 @@ int main(int argc, char** argv) {
     ++next;
   else
     width = 1024, height = 768;
+  unsigned long plants = 0;
+  if (argc > next && std::sscanf(argv[next], "plants=%lu", &plants) == 1) ++next;
   const double seconds = argc > next ? std::atof(argv[next++]) : 8;
   std::vector<int> sides;
   for (; next < argc; ++next) sides.push_back(std::atoi(argv[next]));
@@ -179,6 +249,10 @@ int main(int argc, char** argv) {
   QApplication application(argc, argv);
   Window window(width, height, 30);
   window.set_fixed_frame("map");
-  for (const int side : sides) measure(window, side, seconds);
+  for (const int side : sides)
+    if (plants > 0)
+      measure_plants(window, side, plants, seconds);
+    else
+      measure(window, side, seconds);
   return 0;
 }
