@@ -121,12 +121,9 @@ SimulationThread::PendingState SimulationThread::begin_state_copy(const std::vec
   snapshot_requested_ = clock().seconds();
   ++snapshots_;
   Simulation& s = session_->simulation();
-  PendingState state{moment(),
-                     s.views().begin_snapshot(in_use, band, query.feet),
-                     {},
-                     s.views().begin_costs(query.costs),
-                     {},
-                     {}};
+  PendingState state{moment(), s.views().begin_snapshot(in_use, band, query.feet),
+                     {},       s.views().begin_costs(query.costs),
+                     {},       {}};
   if (query.plants) state.plants = s.views().begin_plants();
   if (query.particle_paths > 0) state.particle_paths = s.views().begin_particle_paths(query.particle_paths);
   if (query.costs.update || query.costs.whole) costs_requested_ = clock().seconds();
