@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <sstream>
 
 #include "src/core/constants.hpp"
 #include "src/render/draped_line.hpp"
@@ -75,10 +76,27 @@ bool is_there(const WindFeatureItem& f, double time) {
 }
 
 render::Place centre_at(const WindFeatureItem& f, double time) {
+  if (!f.path.empty()) {
+    const auto next =
+        std::upper_bound(f.path.begin(), f.path.end(), time,
+                         [](double t, const WindFeaturePoint& point) { return t < point.time; });
+    const WindFeaturePoint& from = next == f.path.begin() ? *next : *(next - 1);
+    const WindFeaturePoint& to = next == f.path.end() ? from : *next;
+    const double share = to.time > from.time ? (time - from.time) / (to.time - from.time) : 0;
+    return {from.x + share * (to.x - from.x), from.y + share * (to.y - from.y)};
+  }
   return {f.center.x + f.velocity.x * (time - f.begin), f.center.y + f.velocity.y * (time - f.begin)};
 }
 
 void put_at(WindFeatureItem& f, const render::Place& place, double time) {
+  if (!f.path.empty()) {
+    const render::Place now = centre_at(f, time);
+    for (WindFeaturePoint& point : f.path) {
+      point.x += place.x - now.x;
+      point.y += place.y - now.y;
+    }
+    return;
+  }
   f.center.x = place.x - f.velocity.x * (time - f.begin);
   f.center.y = place.y - f.velocity.y * (time - f.begin);
 }
@@ -88,7 +106,11 @@ EditWind::Request wind_request(const std::string& operation, const WindFeatureIt
   request.operation = operation;
   request.id = feature.id;
   request.kind = feature.kind;
-  request.center = feature.center;
+  if (feature.path.empty()) {
+    request.center = feature.center;
+    request.velocity = feature.velocity;
+  }
+  request.path = feature.path;
   request.radius = feature.radius;
   request.speed = feature.speed;
   if (has_direction(feature)) {
@@ -102,7 +124,6 @@ EditWind::Request wind_request(const std::string& operation, const WindFeatureIt
   }
   request.begin = feature.begin;
   request.end = feature.end;
-  request.velocity = feature.velocity;
   return request;
 }
 
@@ -143,10 +164,35 @@ void apply_to(WindFeatures& features, const EditWind::Request& done) {
   item.begin = done.begin;
   item.end = done.end;
   item.velocity = done.velocity;
+  item.path = done.path;
   if (same != features.end())
     *same = item;
   else
     features.push_back(item);
+}
+
+std::string path_text(const WindFeatureItem& f) {
+  std::string all;
+  for (const WindFeaturePoint& point : f.path) {
+    char text[100];
+    std::snprintf(text, sizeof text, "%s%.10g %.10g %.10g", all.empty() ? "" : "; ", point.time, point.x,
+                  point.y);
+    all += text;
+  }
+  return all;
+}
+
+std::optional<std::vector<WindFeaturePoint>> path_of(const std::string& text) {
+  std::vector<WindFeaturePoint> path;
+  if (text.find_first_not_of(" ;") == std::string::npos) return path;
+  std::istringstream points(text);
+  for (std::string one; std::getline(points, one, ';');) {
+    std::istringstream numbers(one);
+    WindFeaturePoint point;
+    if (!(numbers >> point.time >> point.x >> point.y) || !(numbers >> std::ws).eof()) return {};
+    path.push_back(point);
+  }
+  return path;
 }
 
 std::string words_of(const WindFeatureItem& f) {
@@ -159,6 +205,7 @@ std::string words_of(const WindFeatureItem& f) {
   std::string words = f.kind + (f.id == 0 ? "" : " " + std::to_string(f.id)) + text;
   std::snprintf(text, sizeof text, ", from %.6g s", f.begin);
   if (f.begin > 0) words += text;
+  if (!f.path.empty()) words += ", on a path of " + std::to_string(f.path.size()) + " points";
   std::snprintf(text, sizeof text, ", until %.6g s", f.end);
   return words + (f.end > 0 ? text : "");
 }
@@ -174,6 +221,10 @@ std::vector<std::vector<render::Place>> outline(const WindFeatureItem& f, double
     add_sink(lines, centre, f.radius, f.speed < 0);
   else
     add_vortex(lines, centre, f.radius, f.speed < 0);
+  if (!f.path.empty()) {
+    Line& path = lines.emplace_back();
+    for (const WindFeaturePoint& point : f.path) path.push_back({point.x, point.y});
+  }
   const double arm = cross_of(f);
   lines.push_back({{centre.x - arm, centre.y}, {centre.x + arm, centre.y}});
   lines.push_back({{centre.x, centre.y - arm}, {centre.x, centre.y + arm}});

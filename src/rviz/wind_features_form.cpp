@@ -4,6 +4,7 @@
 #include <QGroupBox>
 #include <QHBoxLayout>
 #include <QHeaderView>
+#include <QLineEdit>
 #include <QPushButton>
 #include <QSpinBox>
 #include <QTableWidget>
@@ -21,6 +22,14 @@ namespace {
 constexpr int most_rows_seen = 6;
 
 bool all_have(const WindFeatureItem&) { return true; }
+bool has_centre(const WindFeatureItem& f) { return f.path.empty(); }
+
+/// Where its centre is at first.
+geometry_msgs::Point start_of(const WindFeatureItem& f) {
+  geometry_msgs::Point start = f.center;
+  if (!f.path.empty()) start.x = f.path.front().x, start.y = f.path.front().y;
+  return start;
+}
 
 /// What a field says: the number that it was given, which may have more digits, unless somebody has changed
 /// it.
@@ -92,7 +101,7 @@ QWidget* WindFeaturesForm::make_fields() {
   auto* const fields = new QWidget;
   auto* const grid = new QGridLayout(fields);
   grid->setContentsMargins(0, 0, 0, 0);
-  constexpr int seed_row = 4, last_row = 7;
+  constexpr int seed_row = 4, path_row = 7, last_row = 8;
   const auto add = [&](const char* name, const char* label, double low, double high, const char* unit,
                        const char* tip, double& (*of)(WindFeatureItem&),
                        bool (*has)(const WindFeatureItem&)) {
@@ -106,9 +115,9 @@ QWidget* WindFeaturesForm::make_fields() {
   using F = WindFeatureItem;
   const char* const frame = "Centre, in the frame of the terrain";
   add(
-      "feature_x", "x", -1e9, 1e9, " m", frame, [](F& f) -> double& { return f.center.x; }, all_have);
+      "feature_x", "x", -1e9, 1e9, " m", frame, [](F& f) -> double& { return f.center.x; }, has_centre);
   add(
-      "feature_y", "y", -1e9, 1e9, " m", frame, [](F& f) -> double& { return f.center.y; }, all_have);
+      "feature_y", "y", -1e9, 1e9, " m", frame, [](F& f) -> double& { return f.center.y; }, has_centre);
   add(
       "feature_speed", "speed", -100, 100, " m/s",
       "Largest speed that it adds; below 0 a vortex turns clockwise, and a jet blows the other way",
@@ -136,10 +145,10 @@ QWidget* WindFeaturesForm::make_fields() {
       [](F& f) -> double& { return f.end; }, all_have);
   add(
       "feature_velocity_x", "to east", -100, 100, " m/s", "How fast its centre moves, from x, y at `begin`",
-      [](F& f) -> double& { return f.velocity.x; }, all_have);
+      [](F& f) -> double& { return f.velocity.x; }, has_centre);
   add(
       "feature_velocity_y", "to north", -100, 100, " m/s", "How fast its centre moves, from x, y at `begin`",
-      [](F& f) -> double& { return f.velocity.y; }, all_have);
+      [](F& f) -> double& { return f.velocity.y; }, has_centre);
   for (const Number& number : numbers_)
     if (number.field->objectName() == "feature_end") number.field->setSpecialValueText("never");
   seed_ = new QSpinBox;
@@ -149,6 +158,13 @@ QWidget* WindFeaturesForm::make_fields() {
   seed_label_ = new QLabel("seed");
   grid->addWidget(seed_label_, seed_row, 0);
   grid->addWidget(seed_, seed_row, 1);
+  path_ = new QLineEdit;
+  path_->setObjectName("feature_path");
+  path_->setPlaceholderText("t x y; t x y; … [s, m]");
+  path_->setToolTip(
+      "In the place of x, y and velocity: where the centre is when, and it moves straight in between");
+  grid->addWidget(new QLabel("path"), path_row, 0);
+  grid->addWidget(path_, path_row, 1, 1, 3);
   auto* const apply_button = button("apply_feature", "Apply", "Gives the chosen feature these numbers");
   grid->addWidget(apply_button, last_row, 0, 1, 4);
   connect(apply_button, &QPushButton::clicked, this, &WindFeaturesForm::apply);
@@ -172,8 +188,8 @@ void WindFeaturesForm::fill_table() {
       const auto metres = [](double value) { return QString::number(value, 'f', 1); };
       const QStringList texts{f.id ? QString::number(f.id) : "–",
                               QString::fromStdString(f.kind),
-                              metres(f.center.x),
-                              metres(f.center.y),
+                              metres(start_of(f).x),
+                              metres(start_of(f).y),
                               QString::number(f.speed, 'g', 4),
                               metres(f.radius)};
       for (int column = 0; column < texts.size(); ++column) {
@@ -218,6 +234,7 @@ void WindFeaturesForm::show_chosen() {
   seed_label_->setVisible(has_eddies(*feature));
   seed_->setVisible(has_eddies(*feature));
   seed_->setValue(feature->seed);
+  path_->setText(QString::fromStdString(path_text(*feature)));
 }
 
 void WindFeaturesForm::apply() {
@@ -226,6 +243,14 @@ void WindFeaturesForm::apply() {
   for (const Number& number : numbers_)
     if (number.has(changed)) number.of(changed) = value_of(number.field, number.of(*shown_));
   changed.seed = seed_->value();
+  if (const std::string text = path_->text().toStdString(); text != path_text(*shown_)) {
+    const auto path = path_of(text);
+    if (!path)
+      return error_->show_error("path: '" + text +
+                                "' is no path (allowed: time, x and y of each point: t x y; t x y)");
+    changed.center = start_of(changed);
+    changed.path = *path;
+  }
   call(wind_request(EditWind::Request::CHANGE, changed));
 }
 

@@ -11,6 +11,7 @@
 #include "src/rviz/wind_features.hpp"
 
 class QDoubleSpinBox;
+class QLineEdit;
 class QPushButton;
 class QSpinBox;
 class QTableWidget;
@@ -53,6 +54,7 @@ class WindFeaturesForm : public QWidget {
   std::vector<Number> numbers_;
   QLabel* seed_label_;
   QSpinBox* seed_;
+  QLineEdit* path_;
   QPushButton *delete_, *delete_all_;
   ErrorLine* error_;
 };

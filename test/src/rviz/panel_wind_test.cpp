@@ -108,6 +108,28 @@ TEST_F(PanelWinds, AreListedChangedAndDeleted) {
   EXPECT_TRUE(rows(0));
 }
 
+TEST_F(PanelWinds, APathIsText) {
+  edit(feature(3, EditWind::Request::VORTEX, 30));
+  ASSERT_TRUE(rows(1));
+  choose(0);
+  EXPECT_TRUE(seen("feature_x"));
+  window_->type("feature_path", "0 20 10; 5 40");
+  window_->click("apply_feature");
+  EXPECT_NE(window_->error("wind_features_error").find("is no path"), std::string::npos);
+  window_->type("feature_path", "0 20 10; 5 40 10; 9 40 30");
+  window_->click("apply_feature");
+  const auto has = [](std::size_t points, double x) {
+    return [=](const auto& list) {
+      return list.size() == 1 && list[0].path.size() == points && list[0].center.x == x;
+    };
+  };
+  ASSERT_TRUE(node_lists(has(3, 0))) << window_->error("wind_features_error");
+  EXPECT_TRUE(window_->run_until([&] { return cell(0, 2) == "20.0" && !seen("feature_x"); }));
+  window_->type("feature_path", " ");
+  window_->click("apply_feature");
+  EXPECT_TRUE(node_lists(has(0, 20))) << "it stands where its path began";
+}
+
 /// The panel is then not the first subscriber in its process, as beside the tool WindTool.
 TEST_F(PanelWinds, OfAnotherNodeAreForgotten) {
   edit(feature(3, EditWind::Request::VORTEX, 30));

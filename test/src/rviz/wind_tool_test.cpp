@@ -317,6 +317,32 @@ TEST(WindOutline, FeaturesComeGoAndMove) {
   EXPECT_TRUE(desert_sim::is_there(moving, 1e9));
 }
 
+TEST(WindOutline, FeaturesFollowTheirPath) {
+  WindFeatureItem f;
+  f.kind = EditWind::Request::VORTEX;
+  f.radius = 10;
+  f.path = *desert_sim::path_of("10 0 0; 20 8 0;20.5 8 4");
+  ASSERT_EQ(f.path.size(), 3u);
+  EXPECT_EQ(desert_sim::path_text(f), "10 0 0; 20 8 0; 20.5 8 4");
+  const auto expect = [&](double time, double x, double y) {
+    SCOPED_TRACE(time);
+    EXPECT_NEAR(desert_sim::centre_at(f, time).x, x, 1e-12);
+    EXPECT_NEAR(desert_sim::centre_at(f, time).y, y, 1e-12);
+  };
+  expect(0, 0, 0), expect(15, 4, 0), expect(20.25, 8, 2), expect(99, 8, 4);
+  desert_sim::put_at(f, {14, 1}, 15);
+  expect(0, 10, 1), expect(15, 14, 1), expect(99, 18, 5);
+  const auto request = desert_sim::wind_request("change", f);
+  EXPECT_EQ(request.path, f.path);
+  EXPECT_EQ(request.center.x, 0);
+  WindFeatures list(1);
+  desert_sim::apply_to(list, request);
+  EXPECT_EQ(list[0].path, f.path);
+  EXPECT_TRUE(desert_sim::path_of(" ")->empty());
+  for (const char* wrong : {"1 2", "1 2 3 4", "1 2 x", "1 2 3; 4", "1 2 3;;4 5 6"})
+    EXPECT_FALSE(desert_sim::path_of(wrong)) << wrong;
+}
+
 TEST(WindOutline, FreeIdsAreNotGivenTwice) {
   WindFeatures there(2);
   there[0].id = 4;
