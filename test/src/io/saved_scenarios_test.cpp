@@ -114,6 +114,20 @@ TEST_F(SavedScenario, TakesWhatIsChangedInItsFile) {
   EXPECT_EQ(state.wind_above().x, 2) << "its own timeline";
 }
 
+/// Plants carry the traits of their species with them: what the file changes reaches them as a command would.
+TEST_F(SavedScenario, LivesOnByTheSpeciesOfItsFile) {
+  const auto live = session(test::small_oasis);
+  steps(*live, 30);
+  ASSERT_GT(live->simulation().state().plants.count, 0);
+  save(*live);
+  const Settings faster{"species.0.growth=0.9"};
+  const auto changed = saved_session(faster), unchanged = saved_session();
+  live->apply(command::SetParameters{faster});
+  for (Session* s : {live.get(), changed.get(), unchanged.get()}) steps(*s, 20);
+  EXPECT_EQ(hash(*changed), hash(*live));
+  EXPECT_NE(hash(*unchanged), hash(*live));
+}
+
 TEST_F(SavedScenario, RefusesWhatCannotChange) {
   const auto live = session(test::small_desert);
   save(*live);
