@@ -74,7 +74,7 @@ target_precompile_headers(desert_node_test_headers PRIVATE
   <tf2_geometry_msgs/tf2_geometry_msgs.h> <tf2_ros/transform_listener.h> support/ros/service_tests.hpp)
 
 file(GLOB_RECURSE launches RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} CONFIGURE_DEPENDS src/*.test python/*.test
-  launch/*.test)
+  launch/*.test examples/*.test)
 list(FILTER launches EXCLUDE REGEX "grid_map_clients/|src/rviz/")
 file(GLOB_RECURSE nodes CONFIGURE_DEPENDS src/*.cpp)
 # Tests for which not every system has the packages.
