@@ -48,7 +48,7 @@ std::map<std::string, std::string> collect_leaf_values(const Scenario& scenario)
 /// Lists beside the sections that can change, whole or in part.
 bool is_of_live_list(const std::string& path) {
   const std::string list = path.substr(0, path.find('.'));
-  return list == "species" || list == "competition" || list == "growth_curves";
+  return list == "species" || list == "competition" || list == "growth_curves" || path == "run.timeline";
 }
 
 /// Species that settings have added compete by 1, like those of a scenario that says nothing of it.

@@ -23,7 +23,6 @@ constexpr FixedParameter fixed_parameters[] = {
     {"run.steps", "it is the length of a headless run"},
     {"run.duration", "it is the length of a headless run"},
     {"run.start_from", "it is the start of a simulation"},
-    {"run.timeline", "it begins at the start of a simulation"},
     {"wind.series_file", "it is read at the start of a simulation"},
     {"wind.series_direction", "it belongs to wind.series_file"},
     {"wind.series_angle", "it belongs to wind.series_file"},
@@ -54,8 +53,8 @@ void for_each_live_parameter(const Scenario& scenario, Visit&& visit) {
 /// A copy of `scenario` with some parameters set ("wind.speed=7"). Of the lists `species`, `competition` and
 /// `growth_curves`, too, whole or in part ("species.0.max_radius=2"): a species keeps its place and name,
 /// because plants refer to it, and others may follow ("species.2={preset: tree}"), which compete by 1. Plants
-/// can begin to live (vegetation.enabled), but not end. Throws ConfigError that lists all settings that
-/// cannot change, are unknown, or have an invalid value.
+/// can begin to live (vegetation.enabled), but not end. `run.timeline` is replaced whole. Throws ConfigError
+/// that lists all settings that cannot change, are unknown, or have an invalid value.
 Scenario with_live_settings(const Scenario& scenario, const Settings& settings);
 
 /// The parameters of `now` that differ from `before`, as path and value; a list counts as one value.

@@ -241,6 +241,9 @@ void check_timeline(const Scenario& scenario, const std::vector<TimelineEntry>& 
   for (std::size_t n = 0; n < timeline.size(); ++n) {
     const TimelineEntry& entry = timeline[n];
     const std::string key = list + "." + std::to_string(n);
+    for (const std::string& setting : entry.settings)
+      if (setting.rfind("run.timeline", 0) == 0)
+        errors.add(key + ".set.run.timeline", "would replace its own list");
     try {
       if (!entry.settings.empty()) then = with_live_settings(then, entry.settings);
     } catch (const ConfigError& e) {

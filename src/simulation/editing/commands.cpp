@@ -1,8 +1,10 @@
 #include "src/simulation/editing/commands.hpp"
 
 #include <algorithm>
+#include <tuple>
 
 #include "src/core/error.hpp"
+#include "src/core/number_text.hpp"
 #include "src/scenario/live_parameters.hpp"
 #include "src/scenario/range_checks.hpp"
 #include "src/scenario/terrain_builder.hpp"
@@ -59,6 +61,28 @@ void require_no_still_plants(const SimulationState& state, const Scenario& wante
                       " cells (allowed: none; edit_terrain can set the layer vegetation to 0)");
 }
 
+bool replaces_timeline(const std::vector<std::string>& settings) {
+  return std::any_of(settings.begin(), settings.end(),
+                     [](const std::string& setting) { return setting.rfind("run.timeline=", 0) == 0; });
+}
+
+/// What the timeline has until now has happened, or never will.
+void require_future_timeline(const SimulationState& state, const Scenario& wanted) {
+  const std::vector<TimelineEntry>& before = state.scenario.timeline;
+  for (std::size_t n = 0; n < wanted.timeline.size(); ++n) {
+    const TimelineEntry& entry = wanted.timeline[n];
+    const auto is_same = [&entry](const TimelineEntry& old) {
+      return std::tie(entry.time, entry.ramp, entry.every, entry.until, entry.settings, entry.command) ==
+             std::tie(old.time, old.ramp, old.every, old.until, old.settings, old.command);
+    };
+    const bool ahead = entry.time >= state.time() && entry.time > state.timeline_time;
+    if (!ahead && std::none_of(before.begin(), before.end(), is_same))
+      throw ConfigError("set_parameters: run.timeline." + std::to_string(n) +
+                        ".time: " + number_text(entry.time, 9) + " s is past (allowed: from " +
+                        number_text(state.time(), 9) + " s, and entries that the timeline has)");
+  }
+}
+
 /// Nothing that carries sand through the air may be there to let it fall again.
 void require_carried(const command::EditTerrain& edit, const Scenario& scenario) {
   if (edit.layer != info(Layer::airborne_sand).name) return;
@@ -104,6 +128,11 @@ void Commands::set_parameters(const std::vector<std::string>& settings) {
   require_sea(changed, state_.terrain.scale(), "set_parameters");
   require_no_still_plants(state_, changed);
   require_more_memory(state_, changed);
+  std::optional<std::vector<std::optional<Command>>> new_timeline;
+  if (replaces_timeline(settings)) {
+    require_future_timeline(state_, changed);
+    new_timeline = read_timed_commands(changed);
+  }
   state_.exec().synchronise();  // memory that steps in flight work with is given back
   const bool had_plants = static_cast<bool>(state_.plants), new_species = !same_species(before, changed);
   const ClockOrigin clock_before = state_.clock_origin;
@@ -122,6 +151,7 @@ void Commands::set_parameters(const std::vector<std::string>& settings) {
     pipeline_.prepare();
     throw;
   }
+  if (new_timeline) timed_commands_ = std::move(*new_timeline);
   state_.wind_regime = state_.wind_regime.with(changed.wind_regime, state_.time());
 }
 

@@ -98,6 +98,36 @@ TEST_F(SavedScenario, KeepsLivePlants) {
   expect_same_continuation(*live);
 }
 
+TEST_F(SavedScenario, HasTheNameOfItsFolder) {
+  const auto live = session(test::small_desert);
+  save(*live);
+  const std::filesystem::path mine = folder_.path("mine");
+  std::filesystem::create_directory(mine);
+  for (const auto& entry : std::filesystem::directory_iterator(folder_.path(".")))
+    if (entry.is_regular_file()) std::filesystem::copy(entry, mine / entry.path().filename());
+  EXPECT_EQ(load_scenario((mine / "scenario.yaml").string()).name, "mine");
+  std::filesystem::rename(mine / "scenario.yaml", mine / "evening.yaml");
+  EXPECT_EQ(load_scenario((mine / "evening.yaml").string()).name, "evening");
+}
+
+TEST_F(SavedScenario, GoesOnWithATimelineOfALiveRun) {
+  const std::string timeline =
+      "run.timeline=[{time: 9, set: {wind.speed: 4}}, {time: 12, ramp: 5, set: {saltation.lift: 0.2}},"
+      " {time: 20, command: edit_terrain, layer: sand, x: 6, y: 6, radius: 3, value: 1}]";
+  const auto live = session(test::parsed(test::small_desert), folder_.path("journal.yaml"));
+  const auto from_the_start = session(test::parsed(test::small_desert));
+  from_the_start->apply(command::SetParameters{{timeline}});
+  steps(*live, 7);
+  steps(*from_the_start, 7);
+  live->apply(command::SetParameters{{timeline}});
+  steps(*live, 8);
+  steps(*from_the_start, 8);
+  save(*live);
+  expect_same_continuation(*live);
+  steps(*from_the_start, 25);
+  EXPECT_EQ(hash(*from_the_start), hash(*live)) << "it does not matter when it was told";
+}
+
 TEST_F(SavedScenario, TakesWhatIsChangedInItsFile) {
   const auto live = session(test::small_desert);
   steps(*live, 4);

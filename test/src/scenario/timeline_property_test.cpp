@@ -101,6 +101,44 @@ TEST_P(Timeline, RampsThatMeetAConditionBetweenParametersGoOn) {
   EXPECT_NE(messages.front().find("must not be below start_deg"), std::string::npos) << messages.front();
 }
 
+TEST_P(Timeline, AnotherOneTakesItsPlaceInARunningSimulation) {
+  const std::string timeline =
+      "[{time: 10, set: {wind.speed: 6}}, {time: 14, every: 2, command: edit_terrain, "
+      "layer: sand, x: 5, y: 5, radius: 3, value: 1}]";
+  auto told = simulation(timeline_world + "run: {timeline: " + timeline + "}\n");
+  auto live = simulation(timeline_world);
+  test::run(*told, 8);
+  test::run(*live, 8);
+  live->apply(command::SetParameters{{"run.timeline=" + timeline}});
+  test::run(*told, 12);
+  test::run(*live, 12);
+  EXPECT_EQ(live->state().hash(), told->state().hash());
+
+  const auto refusal = [&](const std::string& setting) -> std::string {
+    try {
+      live->apply(command::SetParameters{{setting}});
+    } catch (const ConfigError& e) {
+      return e.what();
+    }
+    return "";
+  };
+  const std::string before = live->commands().describe_changes();
+  EXPECT_NE(
+      refusal("run.timeline=[{time: 19, set: {wind.speed: 2}}]").find("run.timeline.0.time: 19 s is past"),
+      std::string::npos);
+  EXPECT_NE(refusal("run.timeline=[{time: 30, command: edit_terrain, layer: sand, x: 5, y: 5, radius: -1}]")
+                .find("radius"),
+            std::string::npos);
+  EXPECT_NE(refusal("run.timeline=[{time: 30, set: {run.timeline: []}}]"), "");
+  EXPECT_EQ(live->commands().describe_changes(), before) << "what is refused changes nothing";
+  EXPECT_EQ(refusal("run.timeline=[{time: 10, set: {wind.speed: 6}}, {time: 20, set: {wind.speed: 3}}]"), "")
+      << "an entry that it has may have happened";
+  live->step();
+  EXPECT_EQ(live->state().present_scenario().wind_regime.speed, 3);
+  EXPECT_EQ(refusal("run.timeline=[]"), "");
+  EXPECT_EQ(live->commands().describe_changes(), "");
+}
+
 TEST(TimelineFaults, AreAllNamed) {
   const auto faults_of = [](const std::string& timeline) -> std::string {
     try {
@@ -121,6 +159,7 @@ TEST(TimelineFaults, AreAllNamed) {
             "run.timeline.1.time: is earlier"},
            {"[{time: 1, set: {rain.rat: 0}}]", "rain.rat: unknown parameter"},
            {"[{time: 1, set: {rain.rate: -1}}]", "rain.rate: -1 is not in [0, 1] m/s"},
+           {"[{time: 1, set: {run.timeline: []}}]", "run.timeline.0.set"},
            {"[{time: 1, set: {grid.width: 7}}]", "grid.width: cannot change"},
            {"[{time: 1, set: {wind_shadow.full_deg: 5}}]", "must not be below start_deg"}})
     EXPECT_NE(faults_of(timeline).find(part), std::string::npos) << timeline << ":\n" << faults_of(timeline);
