@@ -1,4 +1,7 @@
 """Calls of services that raise what the node says is wrong."""
+import ast
+import re
+
 import rospy
 
 
@@ -15,6 +18,12 @@ class SimulationError(RuntimeError):
         self.service, self.reason = service, reason
 
 
+def _words_of(error):
+    """What the node says of a call that failed; rospy gives it within a sentence, as bytes are written in Python."""
+    said = re.fullmatch(r"service \[[^]]*\] responded with an error: (b(['\"]).*\2)", str(error), re.DOTALL)
+    return ast.literal_eval(said[1]).decode("utf-8", "replace") if said else str(error)
+
+
 def call(service, kind, timeout, *arguments, **fields):
     """The answer of a service.
 
@@ -28,7 +37,7 @@ def call(service, kind, timeout, *arguments, **fields):
         rospy.wait_for_service(service, timeout)
         answer = rospy.ServiceProxy(service, kind)(*arguments, **fields)
     except rospy.ServiceException as error:
-        raise SimulationError(service, str(error)) from error
+        raise SimulationError(service, _words_of(error)) from error
     except rospy.ROSInterruptException:
         raise
     except rospy.ROSException as error:
