@@ -72,8 +72,12 @@ CoverPicture empty_picture(const PlantTiles& plants) {
 
 class Painter {
  public:
-  explicit Painter(CoverPicture& picture)
+  Painter(CoverPicture& picture, const CoverBounds& bounds)
       : picture_(picture),
+        west_(first(bounds.west - picture.west, picture.width)),
+        south_(first(bounds.south - picture.south, picture.height)),
+        east_(end(bounds.east - picture.west, picture.width)),
+        north_(end(bounds.north - picture.south, picture.height)),
         pixels_(static_cast<std::size_t>(picture.width) * static_cast<std::size_t>(picture.height)),
         work_(most_layers * static_cast<double>(pixels_.size())) {}
 
@@ -83,14 +87,19 @@ class Painter {
                  y = (static_cast<double>(plant.y) - picture_.south) / picture_.pixel,
                  radius = static_cast<double>(plant.radius) / picture_.pixel;
     if (radius < 0.5) {
-      add(static_cast<int>(x), static_cast<int>(y), static_cast<float>(pi * radius * radius), colour);
+      const int column = static_cast<int>(x), row = static_cast<int>(y);
+      if (column >= west_ && column < east_ && row >= south_ && row < north_)
+        add(column, row, static_cast<float>(pi * radius * radius), colour);
       return;
     }
-    const auto low = [&](double at) { return static_cast<int>(std::max(0.0, at - radius - 0.5)); };
+    const auto low = [&](double at, int begin) {
+      return static_cast<int>(std::max<double>(begin, at - radius - 0.5));
+    };
     const auto high = [&](double at, int end) {
       return static_cast<int>(std::min(end - 1.0, at + radius + 0.5));
     };
-    const int west = low(x), east = high(x, picture_.width), south = low(y), north = high(y, picture_.height);
+    const int west = low(x, west_), east = high(x, east_), south = low(y, south_), north = high(y, north_);
+    if (west > east || south > north) return;
     work_ -= (east - west + 1.0) * (north - south + 1.0);
     if (work_ < 0) return;
     const auto soft = static_cast<float>(std::sqrt(radius * radius - 1.0 / 12));  // its edges add area
@@ -110,7 +119,8 @@ class Painter {
       all.blue += pixel.blue;
       all.bare += 1 - pixel.bare;
     }
-    const Colour mean{all.red / all.bare, all.green / all.bare, all.blue / all.bare};
+    const float covered = std::max(all.bare, 1e-6f);  // none, if no plant stands within the bounds
+    const Colour mean{all.red / covered, all.green / covered, all.blue / covered};
     std::vector<PackedColour> packed;
     packed.reserve(pixels_.size());
     for (const Pixel& p : pixels_) {
@@ -122,6 +132,13 @@ class Painter {
   }
 
  private:
+  /// The columns, or rows, that lie as a whole beyond the first bound and before the last one [m].
+  int first(double bound, int count) const {
+    return static_cast<int>(std::clamp<double>(std::ceil(bound / picture_.pixel), 0, count));
+  }
+  int end(double bound, int count) const {
+    return static_cast<int>(std::clamp<double>(std::floor(bound / picture_.pixel), 0, count));
+  }
   void add(int column, int row, float share, const Colour& colour) {
     Pixel& pixel = pixels_[static_cast<std::size_t>(row) * static_cast<std::size_t>(picture_.width) +
                            static_cast<std::size_t>(column)];
@@ -133,6 +150,7 @@ class Painter {
   }
 
   CoverPicture& picture_;
+  const int west_, south_, east_, north_;  ///< pixels that may be painted
   std::vector<Pixel> pixels_;
   double work_;  ///< pixels that may still be looked at
 };
@@ -180,10 +198,10 @@ void add_strips(CoverPicture& picture, std::size_t level) {
 
 }  // namespace
 
-CoverPicture plant_cover(const PlantTiles& plants) {
+CoverPicture plant_cover(const PlantTiles& plants, const CoverBounds& bounds) {
   if (plants.plants().empty()) return {};
   CoverPicture picture = empty_picture(plants);
-  Painter painter(picture);
+  Painter painter(picture, bounds);
   std::vector<Colour> colours;
   for (const PlantKind& kind : plants.kinds()) colours.push_back(colour_in_light(kind));
   for (const TilePlant& plant : plants.plants()) painter.paint(plant, colours[plant.kind]);

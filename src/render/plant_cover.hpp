@@ -2,6 +2,7 @@
 /// Plants as a picture of the ground seen from above: how much of it lies below crowns, and their colour.
 /// What is too far to be drawn plant by plant is seen as this.
 
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -35,8 +36,13 @@ struct CoverPicture {
   }
 };
 
+/// What may be painted, in the plants' frame [m].
+struct CoverBounds {
+  double west = -HUGE_VAL, south = -HUGE_VAL, east = HUGE_VAL, north = HUGE_VAL;
+};
+
 /// The smallest picture around the feet of all plants. Its pixels are a power of two [m] on a side: as small
 /// as `most_pixels` allow, but for no more than 64 pixels a plant, or 2^16 in all.
-CoverPicture plant_cover(const PlantTiles& plants);
+CoverPicture plant_cover(const PlantTiles& plants, const CoverBounds& bounds = {});
 
 }  // namespace desert_sim::render

@@ -14,13 +14,13 @@ namespace desert_sim {
 
 namespace {
 
-Ogre::TexturePtr new_texture(const render::CoverPicture& picture) {
+Ogre::TexturePtr new_texture(int width, int height, std::size_t levels) {
   static int count = 0;
   return Ogre::TextureManager::getSingleton().createManual(
       "desert_sim/plant_cover" + std::to_string(count++),
       Ogre::ResourceGroupManager::DEFAULT_RESOURCE_GROUP_NAME, Ogre::TEX_TYPE_2D,
-      static_cast<Ogre::uint32>(picture.width), static_cast<Ogre::uint32>(picture.height),
-      static_cast<int>(picture.levels.size()) - 1, Ogre::PF_A8B8G8R8, Ogre::TU_STATIC_WRITE_ONLY);
+      static_cast<Ogre::uint32>(width), static_cast<Ogre::uint32>(height), static_cast<int>(levels) - 1,
+      Ogre::PF_A8B8G8R8, Ogre::TU_STATIC_WRITE_ONLY);
 }
 
 void remove(Ogre::TexturePtr& texture) {
@@ -31,16 +31,26 @@ void remove(Ogre::TexturePtr& texture) {
 }  // namespace
 
 CoverTexture::CoverTexture(const Ogre::MaterialPtr& ground)
-    : ground_(ground), unit_(ground->getTechnique(0)->getPass(0)->createTextureUnitState()) {
+    : ground_(ground),
+      unit_(ground->getTechnique(0)->getPass(0)->createTextureUnitState()),
+      nothing_(new_texture(1, 1, 1)) {
   unit_->setTextureAddressingMode(Ogre::TextureUnitState::TAM_BORDER);
   unit_->setTextureBorderColour(Ogre::ColourValue::ZERO);  // the ground beyond the picture stays as it is
   unit_->setTextureFiltering(Ogre::TFO_TRILINEAR);
-  unit_->setColourOperationEx(Ogre::LBX_BLEND_TEXTURE_ALPHA, Ogre::LBS_TEXTURE, Ogre::LBS_CURRENT);
   unit_->setAlphaOperation(Ogre::LBX_SOURCE1, Ogre::LBS_CURRENT, Ogre::LBS_TEXTURE);
-  unit_->setBlank();
+  hide();
 }
 
-CoverTexture::~CoverTexture() { clear(); }
+CoverTexture::~CoverTexture() {
+  clear();
+  remove(nothing_);
+}
+
+/// Lets the ground through as it is. A unit without a texture would show OGRE's warning.
+void CoverTexture::hide() {
+  unit_->setTexture(nothing_);
+  unit_->setColourOperationEx(Ogre::LBX_SOURCE1, Ogre::LBS_CURRENT, Ogre::LBS_CURRENT);
+}
 
 void CoverTexture::set(std::shared_ptr<const render::CoverPicture> picture, double east, double north) {
   if (picture->empty()) return clear();
@@ -49,14 +59,16 @@ void CoverTexture::set(std::shared_ptr<const render::CoverPicture> picture, doub
   east_ = east;
   north_ = north;
   if (filled_ != shown_) remove(filled_);
-  filled_ = shown_ && known_.same_grid(*sending_) ? shown_ : new_texture(*sending_);
+  filled_ = shown_ && known_.same_grid(*sending_)
+                ? shown_
+                : new_texture(sending_->width, sending_->height, sending_->levels.size());
   if (filled_ != shown_) known_.strips.clear();
 }
 
 void CoverTexture::clear() {
   sending_.reset();
   known_ = {};
-  unit_->setBlank();
+  hide();
   if (filled_ != shown_) remove(filled_);
   filled_.reset();
   remove(shown_);
@@ -92,6 +104,7 @@ void CoverTexture::show() {
     remove(shown_);
     shown_ = filled_;
     unit_->setTexture(shown_);
+    unit_->setColourOperationEx(Ogre::LBX_BLEND_TEXTURE_ALPHA, Ogre::LBS_TEXTURE, Ogre::LBS_CURRENT);
   }
   known_ = {sending_->west,  sending_->south, sending_->pixel, sending_->width, sending_->height, {},
             sending_->strips};

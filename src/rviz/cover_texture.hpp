@@ -32,11 +32,12 @@ class CoverTexture {
  private:
   void send(const render::CoverStrip& strip);
   void show();
+  void hide();
   void place();
 
   const Ogre::MaterialPtr ground_;
   Ogre::TextureUnitState* unit_ = nullptr;
-  Ogre::TexturePtr shown_, filled_;  ///< filled_: the one that strips are sent to
+  Ogre::TexturePtr nothing_, shown_, filled_;  ///< filled_: the one that strips are sent to
   /// The pixels on the card, without their values: strips of the picture that was sent last.
   render::CoverPicture known_;
   std::shared_ptr<const render::CoverPicture> sending_;  ///< null: all is sent

@@ -40,8 +40,8 @@ void PlantsView::clear() {
 }
 
 void PlantsView::update(const Ogre::Camera& camera, int viewport_height, const Settings& settings) {
-  take_prepared();
-  prepare(settings.corner_x, settings.corner_y);
+  if (take_prepared()) return;  // to make a texture takes its time
+  prepare(settings);
   cover_.update(settings.seconds / 2);
   render::PlantLimits limits;
   limits.plants = settings.most;
@@ -62,37 +62,42 @@ void PlantsView::replace() {
 }
 
 /// Gives the newest message to a thread of its own, if the one before is shown as a whole.
-void PlantsView::prepare(double corner_x, double corner_y) {
+void PlantsView::prepare(const Settings& s) {
   if (preparing_.valid() || next_ || cover_.waiting() > 0) return;
   Plants::ConstPtr newest = inbox_.take();
   if (!newest) return;
   Prepared empty;
   empty.subscription = subscription_;
-  empty.east = newest->origin.position.x - corner_x;
-  empty.north = newest->origin.position.y - corner_y;
+  empty.east = newest->origin.position.x - s.corner_x;
+  empty.north = newest->origin.position.y - s.corner_y;
   const bool drawable = render::is_drawable(empty.east) && render::is_drawable(empty.north);
   if (!drawable) empty.east = empty.north = 0;
-  preparing_ = std::async(std::launch::async, [empty, drawable, message = std::move(newest)]() mutable {
-    Prepared prepared = empty;
-    auto plants =
-        std::make_shared<render::PlantTiles>(drawable ? plant_tiles(*message) : render::PlantTiles());
-    message.reset();
-    prepared.cover = std::make_shared<render::CoverPicture>(render::plant_cover(*plants));
-    prepared.plants = std::move(plants);
-    return prepared;
-  });
+  // The walls at the edges of a terrain have the colour of what is painted there.
+  const render::CoverBounds bounds{s.cell_size - empty.east, s.cell_size - empty.north,
+                                   s.width - s.cell_size - empty.east, s.height - s.cell_size - empty.north};
+  preparing_ =
+      std::async(std::launch::async, [empty, bounds, drawable, message = std::move(newest)]() mutable {
+        Prepared prepared = empty;
+        auto plants =
+            std::make_shared<render::PlantTiles>(drawable ? plant_tiles(*message) : render::PlantTiles());
+        message.reset();
+        prepared.cover = std::make_shared<render::CoverPicture>(render::plant_cover(*plants, bounds));
+        prepared.plants = std::move(plants);
+        return prepared;
+      });
 }
 
-void PlantsView::take_prepared() {
-  if (!is_ready(preparing_)) return;
+bool PlantsView::take_prepared() {
+  if (!is_ready(preparing_)) return false;
   Prepared prepared = preparing_.get();
   if (prepared.subscription != subscription_) {
     old_.insert(old_.end(), {prepared.cover, prepared.plants});
-    return;
+    return false;
   }
   next_ = std::make_unique<PlantObjects>(parent_, prepared.east, prepared.north, prepared.plants);
   cover_.set(prepared.cover, prepared.east, prepared.north);
   picture_ = std::move(prepared.cover);
+  return true;
 }
 
 /// Frees what is no longer drawn in a thread of its own: tens of megabytes take milliseconds.

@@ -26,7 +26,8 @@ class PlantsView {
   void subscribe(ros::NodeHandle& node, const std::string& topic);
 
   struct Settings {
-    double corner_x = 0, corner_y = 0;  ///< of the terrain, in its frame [m]
+    double corner_x = 0, corner_y = 0;            ///< of the terrain, in its frame [m]
+    double width = 0, height = 0, cell_size = 1;  ///< of the terrain [m]
     double exaggeration = 1;
     std::size_t most = 0;  ///< plants as shapes
     double seconds = 0;    ///< what a frame may take
@@ -46,8 +47,8 @@ class PlantsView {
     std::shared_ptr<const render::PlantTiles> plants;
     std::shared_ptr<const render::CoverPicture> cover;
   };
-  void prepare(double corner_x, double corner_y);
-  void take_prepared();
+  void prepare(const Settings& settings);
+  bool take_prepared();
   void replace();
   void free_old();
   void clear();

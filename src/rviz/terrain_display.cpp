@@ -271,6 +271,9 @@ void TerrainDisplay::update_plants(const Ogre::Camera& camera, int viewport_heig
   PlantsView::Settings settings;
   settings.corner_x = info.origin_x;
   settings.corner_y = info.origin_y;
+  settings.width = info.width * info.cell_size;
+  settings.height = info.height * info.cell_size;
+  settings.cell_size = info.cell_size;
   settings.exaggeration = vertical_exaggeration();
   settings.most = static_cast<std::size_t>(properties_->most_plants());
   settings.seconds = share * properties_->budget();

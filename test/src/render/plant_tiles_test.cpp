@@ -256,6 +256,26 @@ TEST(PlantCover, OfCrownsAboveEachOtherIsLessThanTheirSum) {
   EXPECT_NEAR(cover(four), 255 * (1 - std::pow(1 - 0.2827, 4)), 1) << "what lies at random";
 }
 
+TEST(PlantCover, EndsAtItsBounds) {
+  Columns columns;
+  for (int n = 0; n < 400; ++n)
+    columns.add(static_cast<float>(n % 20), static_cast<float>(n / 20), n % 2 ? 0.02F : 1);
+  const CoverPicture picture = plant_cover(columns.tiles(), {3, 4, 15.5, 16.5});
+  int covered = 0;
+  for (int row = 0; row < picture.height; ++row)
+    for (int column = 0; column < picture.width; ++column) {
+      const double x = picture.west + (column + 0.5) * picture.pixel,
+                   y = picture.south + (row + 0.5) * picture.pixel;
+      const bool within = x > 3 && x < 15.5 && y > 4 && y < 16.5;
+      const PackedColour pixel = picture.levels[0][static_cast<std::size_t>(row * picture.width + column)];
+      covered += pixel >> 24 > 0;
+      if (!within) {
+        EXPECT_EQ(pixel >> 24, 0u) << x << " " << y;
+      }
+    }
+  EXPECT_NEAR(covered * picture.pixel * picture.pixel, 12.5 * 12.5, 10);
+}
+
 TEST(PlantCover, HasBoundedSizeAndWork) {
   Columns columns;
   for (int n = 0; n < 20000; ++n) columns.add(n % 2 ? -1e7F : 1e7F, n % 3 ? 0 : 1e7F, 1e7F);

@@ -78,8 +78,7 @@ TEST_F(TerrainPlants, AreShapesWhereNearAndAPictureOnTheGroundWhereFar) {
   const auto plants = western_half(0.5F);
   const auto count = static_cast<double>(plants->x.size());
   window_->look_from_above(side / 2, side / 2, 1.5);  // a crown has less than a pixel for its radius
-  EXPECT_TRUE(settles(display));
-  window_->run_frames(2);
+  EXPECT_TRUE(settles(display, [] { return window_->pixel(220, 240) != 0; })) << "a new window is black";
   const std::uint32_t west = window_->pixel(220, 240), east = window_->pixel(420, 240);
   publisher_.publish(plants);
   ASSERT_TRUE(has(display, count));
