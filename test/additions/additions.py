@@ -277,7 +277,7 @@ void add_lowest_topic(const TopicContext& context, TopicList& topics) {
 """),
     Insert("src/ros/topics/topic_list.hpp", "void add_wind_topic(const TopicContext& context, TopicList& topics);\n",
            "void add_lowest_topic(const TopicContext& context, TopicList& topics);\n"),
-    Insert("src/ros/topics/topic_list.hpp", "  add_wind_topic(context, topics);           // ~wind\n",
+    Insert("src/ros/topics/topic_list.hpp", "  add_wind_topic(context, topics);            // ~wind\n",
            "  add_lowest_topic(context, topics);         // ~lowest\n"),
     Insert("src/ros/topics/publisher_parameters.hpp", "  double wind_rate = 2;\n", "  double lowest_rate = 1;\n"),
     Insert("src/ros/topics/publisher_parameters.hpp",

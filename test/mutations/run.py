@@ -30,8 +30,8 @@ HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
 TABLE = HERE / "table.md"
 # In this order: the quickest first.
-PROGRAMS = ("kernels_unit", "core_unit", "metrics_unit", "rover_unit", "core_analytic", "io_unit", "export_unit", "kernels_analytic",
-            "kernels_property", "core_property")
+PROGRAMS = ("kernels_unit", "core_unit", "metrics_unit", "rover_unit", "core_analytic", "io_unit", "export_unit", "render_unit",
+            "kernels_analytic", "kernels_property", "core_property")
 SURVIVED = "**SURVIVED**"
 NOT_RUN = "not run"
 LIMIT = 900  # s for a test program: a mutation may make a loop endless
