@@ -143,7 +143,8 @@ TEST(PlantChoice, TakesThoseThatAreLargeEnoughForTheCamera) {
     return chosen_of(plants, View(perspective(), camera_at(100, 100, z, -90), 800), limits);
   };
   // A metre takes 400 / z pixels: trees are seen from up to 800 m, bushes from up to 96 m.
-  EXPECT_EQ(count_of(at_height(2000)), 0u);
+  EXPECT_EQ(count_of(at_height(900)), 0u);
+  EXPECT_EQ(count_of(at_height(700)), 400u);
   const std::vector<ChosenTile> from_far = at_height(500);
   EXPECT_EQ(count_of(from_far), 400u);
   for (const ChosenTile& one : from_far) EXPECT_EQ(plants.tiles()[one.tile].widest, 4) << "trees alone";
