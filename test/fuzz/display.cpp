@@ -4,6 +4,7 @@
 
 #include "include/desert_sim/client/layer_assembler.hpp"
 #include "src/render/plant_cover.hpp"
+#include "src/render/sunlight.hpp"
 #include "src/render/terrain_block.hpp"
 #include "src/rviz/map_windows.hpp"
 #include "src/rviz/message_meshes.hpp"
