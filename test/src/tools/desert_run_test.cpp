@@ -413,8 +413,10 @@ TEST_F(Run, TakesInstalledScenariosByName) {
 }
 
 TEST_F(Run, TakesTheFolderOfASavedScenario) {
-  for (const char* folder : {"kept", "barchan"})
+  for (const char* folder : {"kept", "barchan"}) {
+    std::filesystem::create_directory(path(folder));
     folder_.write(std::string(folder) + "/scenario.yaml", "grid: {width: 9, height: 7}\nseed: 77\n");
+  }
   run_cpu({path("kept"), "--steps", "1", "--out", path("out")});
   EXPECT_EQ(json(summary("out"), "seed"), "77");
   const auto named = [this](const std::string& name) {
