@@ -151,7 +151,7 @@ constexpr const char* saved_terrain_comment = "# A terrain saved at step ";
 constexpr const char* saved_scenario_comment = "# A scenario saved at step ";
 /// Overrides one key of a scenario's YAML. Throws ConfigError.
 void apply_setting(YAML::Node root, const std::string& setting);
-/// The folder of a file, with the slash; "." of a name alone. The name of a scenario in a file.
+/// The folder of a file, with the slash; "." of a name alone. The name of a file without its extension.
 std::string parent_folder(const std::string& path);
 std::string base_name(const std::string& path);
 /// The scenario as YAML with all parameters, defaults included. Of a scenario whose grid is resolved,
