@@ -72,15 +72,16 @@ TEST_P(ParticlePathsOfGrains, ChangeNothing) {
 
 TEST_P(ParticlePathsOfGrains, AreTheSameUntilTheNextStep) {
   const auto world = simulation(ripples(12, 0));
-  const auto lengths = [&] {
-    std::vector<float> all;
-    for (const auto& path : paths(*world, 50)->paths) all.push_back(path.back().x);
-    return all;
+  const auto ends_of_paths = [&] {
+    std::vector<float> ends;
+    const auto all = paths(*world, 50);
+    for (const auto& path : all->paths) ends.push_back(path.back().x);
+    return ends;
   };
-  const std::vector<float> first = lengths();
-  EXPECT_EQ(lengths(), first);
+  const std::vector<float> first = ends_of_paths();
+  EXPECT_EQ(ends_of_paths(), first);
   test::run(*world, 1);
-  EXPECT_NE(lengths(), first);
+  EXPECT_NE(ends_of_paths(), first);
 }
 
 TEST_P(ParticlePathsOfGrains, ThereAreNoneWhereNoGrainFlies) {
