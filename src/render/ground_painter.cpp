@@ -57,6 +57,11 @@ std::vector<std::string> layers_for(const TerrainLook& look) {
   return layers;
 }
 
+float ripples_on(float sand_cover, float normal_z, float sun) {
+  constexpr float gentle = 0.94f, steep = 0.88f;  // 20 and 28 degrees
+  return sand_cover * smooth_step(steep, gentle, normal_z) * sun;
+}
+
 // ---- Materials ----
 
 MaterialWindows::MaterialWindows(const LayerWindow& window, const CellRectangle& cells)

@@ -35,6 +35,9 @@ class OverlayOnCells {
   CellWindow values_;
 };
 
+/// How much of ripples is seen, 0…1: on sand that the sun reaches, and not on slip faces, where sand slides.
+float ripples_on(float sand_cover, float normal_z, float sun);
+
 class GroundPainter {
  public:
   /// For vertices in the centres of these cells. `elevation` has the heights of cells_that_shade() them, as

@@ -11,10 +11,10 @@ namespace desert_sim::render {
 
 namespace {
 
-constexpr int points_in_a_row = 160;             // in a row, if a cell has fewer
-constexpr int most_divisions = 201;              // of a cell
-constexpr double finest = 0.01, coarsest = 0.1;  // between points [m]
-constexpr float rim = 0.1f;                      // of the width, over which micro-relief fades
+constexpr int points_in_a_row = 160;              // in a row, if a cell has fewer
+constexpr int most_divisions = 201;               // of a cell
+constexpr double finest = 0.005, coarsest = 0.1;  // between points [m]
+constexpr float rim = 0.1f;                       // of the width, over which micro-relief fades
 
 /// Cells around a place along an axis, within those that have neighbours on both sides.
 void choose_cells(double place, int count, int wanted, int& first, int& number) {
@@ -95,10 +95,26 @@ class NearGroundBuilder {
     return smooth_step(0, 1, inwards(column, near_.columns() - 1)) *
            smooth_step(0, 1, inwards(row, near_.rows() - 1));
   }
+  /// Binomial weights over five points a side: what is left are heaps, not ripples.
+  float smoothed(int column, int row) const {
+    constexpr float weight[] = {1, 4, 6, 4, 1};
+    float sum = 0, weights = 0;
+    for (int j = -2; j <= 2; ++j)
+      for (int i = -2; i <= 2; ++i) {
+        const int x = std::clamp(column + i, 0, near_.columns() - 1),
+                  y = std::clamp(row + j, 0, near_.rows() - 1);
+        const float offset = near_.heights[index(x, y)] - ground(between(x, y));
+        if (std::isnan(offset)) continue;
+        sum += weight[i + 2] * weight[j + 2] * offset;
+        weights += weight[i + 2] * weight[j + 2];
+      }
+    return weights > 0 ? sum / weights : 0.0f;
+  }
   void find_offsets() {
     for (int row = 0; row < near_.rows(); ++row)
       for (int column = 0; column < near_.columns(); ++column) {
-        const float offset = near_.heights[index(column, row)] - ground(between(column, row));
+        const float offset = near_.ripples ? near_.heights[index(column, row)] - ground(between(column, row))
+                                           : smoothed(column, row);
         offsets_[index(column, row)] = std::isnan(offset) ? 0.0f : offset * fade(column, row);
       }
   }
@@ -135,7 +151,12 @@ class NearGroundBuilder {
     known_.push_back(std::isfinite(z));
     mesh_.vertices.push_back(
         {place(near_.cells.x, column), place(near_.cells.y, row), std::isfinite(z) ? z : 0.0f, nx, ny, up,
-         pack(lit(colour, painter_.light(nx, ny, up, sun, day)), look_.ripples ? 0.0f : 1.0f)});
+         pack(lit(colour, painter_.light(nx, ny, up, sun, day)),
+              look_.ripples ? picture_of_ripples(b, up, sun, fade(column, row)) : 1.0f)});
+  }
+  float picture_of_ripples(const Between& b, float normal_z, float sun, float shape) const {
+    const float sand = b.of([this](int x, int y) { return painter_.sand_cover(x, y); });
+    return ripples_on(sand, normal_z, sun) * (near_.ripples ? 1 - shape : 1.0f);
   }
   void add_quad(int column, int row) {
     const std::size_t corners[4] = {index(column, row), index(column + 1, row), index(column + 1, row + 1),
@@ -158,11 +179,15 @@ class NearGroundBuilder {
 
 }  // namespace
 
-NearWindow near_window(const BlockLayout& layout, double cell_size, double x, double y, double detail) {
-  const double apart = std::max(detail, finest);
+NearWindow near_window(const BlockLayout& layout, double cell_size, double x, double y, double detail,
+                       double ripple_wavelength) {
+  const double for_ripples = std::max(ripple_wavelength / 6, finest);
+  double apart = std::max(detail, finest);
+  if (ripple_wavelength > 0 && apart > for_ripples && apart <= 2.5 * for_ripples) apart = for_ripples;
   const auto odd = [](double n) { return 2 * static_cast<int>(std::ceil((n - 1) / 2)) + 1; };
   NearWindow near;
   near.divisions = std::clamp(odd(std::min(cell_size / apart, double{most_divisions})), 3, most_divisions);
+  near.ripples = cell_size / near.divisions <= ripple_wavelength / 4 || !(ripple_wavelength > 0);
   const bool seen = apart <= coarsest && apart < cell_size && cell_size / near.divisions <= coarsest;
   if (!seen || layout.width() < 4 || layout.height() < 4) return {};
   const int cells = std::max(1, points_in_a_row / near.divisions);

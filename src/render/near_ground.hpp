@@ -14,6 +14,7 @@ namespace desert_sim::render {
 struct NearGround {
   CellRectangle cells;         ///< the centres of its outermost cells are the corners
   int divisions = 1;           ///< steps between the centres of neighbouring cells
+  bool ripples = true;         ///< points are close enough to show ripples as shapes
   std::vector<float> heights;  ///< row-major from the south-west corner; NaN: unknown
 
   bool empty() const { return heights.empty(); }
@@ -26,19 +27,23 @@ struct NearGround {
 struct NearWindow {
   CellRectangle cells;
   int divisions = 1;
+  bool ripples = true;  ///< as in NearGround
 
   bool empty() const { return cells.empty(); }
   bool operator==(const NearWindow& o) const { return cells == o.cells && divisions == o.divisions; }
 };
 /// Points lie as far apart as an odd share of a cell, so that the centres of cells are among them; some 160
-/// in a row, at least a centimetre apart. Empty where they would be farther apart than 10 cm, or than cells
+/// in a row, at least half a centimetre apart. Where it takes no more than 2.5 times as many of them, they are
+/// close enough for ripples of this wavelength [m]; 0: there are none. Empty where they would be farther apart than 10 cm, or than cells
 /// are, and on grids of less than 4 x 4 cells. The window moves in steps of a quarter of its size.
-NearWindow near_window(const BlockLayout& layout, double cell_size, double x, double y, double detail);
+NearWindow near_window(const BlockLayout& layout, double cell_size, double x, double y, double detail,
+                       double ripple_wavelength = 0);
 
 /// The mesh of fine ground, with colours between those of the cells around. Towards the edge of the window
 /// what is between cells fades, so that its edge is that of the hole in the blocks, to the bit of a float.
-/// `grid`, `window` and `look` are those of the blocks. With look.ripples the alpha is 0: none of the ripples
-/// that are but a picture.
+/// `grid`, `window` and `look` are those of the blocks. With look.ripples the alpha says where ripples are
+/// but a picture: towards the edge, or everywhere if points are too far apart, and then heights are smoothed,
+/// so that no waves appear that are none.
 Mesh near_ground_mesh(const NearGround& near, const TerrainGrid& grid, const LayerWindow& window,
                       const TerrainLook& look);
 

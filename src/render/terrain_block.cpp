@@ -14,16 +14,6 @@
 
 namespace desert_sim::render {
 
-namespace {
-
-/// How much of ripples is seen: on sand that the sun reaches, and not on slip faces, where sand slides.
-float ripples_on(float sand_cover, float normal_z, float sun) {
-  constexpr float gentle = 0.94f, steep = 0.88f;  // 20 and 28 degrees
-  return sand_cover * smooth_step(steep, gentle, normal_z) * sun;
-}
-
-}  // namespace
-
 float base_of_walls(const BlockLayout& layout, double cell_size, const LayerWindow& window) {
   const int width = layout.width(), height = layout.height();
   if (width == 0 || height == 0) return std::numeric_limits<float>::quiet_NaN();

@@ -28,7 +28,7 @@ render::HeightField field_of(const LayerMap& map, double exaggeration) {
 }
 
 render::NearGround fine_ground(const render::NearWindow& window, const TerrainSubmap& map) {
-  render::NearGround near{window.cells, window.divisions, {}};
+  render::NearGround near{window.cells, window.divisions, window.ripples, {}};
   const bool fits = map.width == static_cast<std::uint32_t>(near.columns()) &&
                     map.height == static_cast<std::uint32_t>(near.rows()) && map.layers.size() == 1 &&
                     map.layers[0].data.size() == static_cast<std::size_t>(map.width) * map.height;
@@ -66,7 +66,7 @@ void NearGroundView::show_answer() {
 }
 
 void NearGroundView::update(const Ogre::Camera& camera, int viewport_height, const LayerMaps& maps,
-                            double pixels) {
+                            double pixels, double ripple_wavelength) {
   show_answer();
   const auto elevation = maps.find("elevation");
   if (node_.empty() || elevation == maps.end()) return;
@@ -77,8 +77,9 @@ void NearGroundView::update(const Ogre::Camera& camera, int viewport_height, con
   Question question;
   question.step = map.info().step;
   if (seen)
-    question.window = render::near_window(scene_.grid().layout, map.info().cell_size, seen->x(), seen->y(),
-                                          pixels / view.pixels_per_metre(render::Box(*seen, *seen)));
+    question.window =
+        render::near_window(scene_.grid().layout, map.info().cell_size, seen->x(), seen->y(),
+                            pixels / view.pixels_per_metre(render::Box(*seen, *seen)), ripple_wavelength);
   if (question.window.empty()) {
     asked_ = {};
     if (!under_way_) hide();
@@ -101,7 +102,7 @@ void NearGroundView::ask(const Question& question, const LayerMap& elevation) {
   under_way_ = true;
   const LayerMap::Info& info = elevation.info();
   const render::NearWindow& window = question.window;
-  const render::NearGround size{window.cells, window.divisions, {}};
+  const render::NearGround size{window.cells, window.divisions, window.ripples, {}};
   GetSubmapRequest request;
   request.resolution = info.cell_size / window.divisions;
   request.length_x = size.columns() * request.resolution;

@@ -27,7 +27,8 @@ class NearGroundView {
   void touch() { asked_ = {}; }
   /// Shows what has come, and asks for what the camera sees now. Call it in each frame. `maps`: those of the
   /// scene's window; `pixels`: the size of what is to be told apart.
-  void update(const Ogre::Camera& camera, int viewport_height, const LayerMaps& maps, double pixels);
+  void update(const Ogre::Camera& camera, int viewport_height, const LayerMaps& maps, double pixels,
+              double ripple_wavelength);
   /// Why there is none, or what there is; empty if none is wanted here.
   const std::string& status() const { return status_; }
   bool failed() const { return failed_; }

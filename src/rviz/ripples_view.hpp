@@ -27,6 +27,8 @@ class RipplesView {
   void subscribe(ros::NodeHandle& node, const std::string& topic);
   /// Takes over what a thread of its own has drawn. Call it in each frame.
   void update();
+  /// Of the ripples that are shown, or about to be [m]; 0: none.
+  double wavelength() const { return drawn_ ? static_cast<double>(drawn_->ripple_wavelength) : 0; }
 
  private:
   void show(const RippleTile& tile);

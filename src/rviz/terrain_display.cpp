@@ -114,7 +114,7 @@ void TerrainDisplay::update(float, float) {
     if (viewport) {
       const int height = viewport->getActualHeight();
       update_plants(*camera, height);
-      near_ground_->update(*camera, height, maps_, properties_->limits().pixels);
+      near_ground_->update(*camera, height, maps_, properties_->limits().pixels, ripples_view_->wavelength());
       const double spent = render::RebuildQueue::steady_seconds() - begin;
       scene_->update(*camera, height, properties_->budget() - spent, incomplete);
     }

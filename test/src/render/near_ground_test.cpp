@@ -27,7 +27,7 @@ LayerWindow ground_of(const Height& height) {
 
 /// Bilinear between the centres of cells, with ripples of a length of 0.8 m.
 NearGround rippled(const CellRectangle& cells, int divisions, const Height& height) {
-  NearGround near{cells, divisions, {}};
+  NearGround near{cells, divisions, true, {}};
   for (int row = 0; row < near.rows(); ++row)
     for (int column = 0; column < near.columns(); ++column) {
       const float x = static_cast<float>(column) / static_cast<float>(divisions),
@@ -56,7 +56,7 @@ TEST(NearWindow, IsWantedWhereRipplesCanBeSeen) {
   EXPECT_NEAR(1.0 / near.divisions, 0.03, 0.003);
   EXPECT_TRUE(near.cells.contains(32, 32));
   EXPECT_LE((near.cells.width - 1) * near.divisions, 170);
-  EXPECT_TRUE(near_window(layout, 0.01, 0.3, 0.3, 0.001).empty()) << "cells are as fine";
+  EXPECT_TRUE(near_window(layout, 0.005, 0.15, 0.15, 0.001).empty()) << "cells are as fine";
   EXPECT_TRUE(near_window(layout, 1, 32, 32, std::nan("")).empty());
   EXPECT_TRUE(near_window(BlockLayout(3, 64), 1, 1, 32, 0.03).empty());
 }
@@ -131,6 +131,26 @@ TEST(NearGround, HasTheHeightsThatItWasGivenAndTheirSlopes) {
   EXPECT_NEAR(highest, 2 + 0.5f * ripple_height, 1e-3f);
   const float phase = 2 * 3.14159265f / 0.8f / 9;  // of a step: the slope is that over two
   EXPECT_NEAR(steepest, 3.14159265f * ripple_height / 0.8f * std::sin(phase) / phase, 1e-3f);
+}
+
+TEST(NearGround, RipplesThatPointsCannotShowAreAPicture) {
+  const CellRectangle cells{20, 20, 9, 9};
+  NearGround given = rippled(cells, 5, [](int, int) { return 2.0f; });  // four points a wave
+  given.ripples = false;
+  TerrainLook look;
+  look.ripples = true;
+  const Mesh mesh = near_ground_mesh(given, grid_of(cells), ground_of([](int, int) { return 2.0f; }), look);
+  float highest = 0;
+  for (const Vertex& v : mesh.vertices) {
+    highest = std::max(highest, std::fabs(v.z - 2));
+    EXPECT_EQ(v.colour >> 24, 255u);
+  }
+  EXPECT_LT(highest, 0.3f * 0.5f * ripple_height);
+  const BlockLayout layout(64, 64);
+  EXPECT_TRUE(near_window(layout, 1, 32, 32, 0.02, 0.06).ripples) << "with points of a centimetre";
+  EXPECT_FALSE(near_window(layout, 1, 32, 32, 0.06, 0.06).ripples) << "from farther away";
+  EXPECT_NEAR(1.0 / near_window(layout, 1, 32, 32, 0.02, 0.06).divisions, 0.01, 0.001);
+  EXPECT_NEAR(1.0 / near_window(layout, 1, 32, 32, 0.06, 0.06).divisions, 0.06, 0.01);
 }
 
 TEST(NearGround, UnknownGroundIsLeftOut) {
