@@ -11,10 +11,10 @@ namespace desert_sim::render {
 
 namespace {
 
-constexpr int points_in_a_row = 160;              // in a row, if a cell has fewer
-constexpr int most_divisions = 201;               // of a cell
-constexpr double finest = 0.005, coarsest = 0.1;  // between points [m]
-constexpr float rim = 0.1f;                       // of the width, over which micro-relief fades
+constexpr int points_in_a_row = 160;  // in a row, if a cell has fewer
+constexpr int most_divisions = 201;   // of a cell
+constexpr double finest = 0.005;      // between points [m]
+constexpr float rim = 0.1f;           // of the width, over which micro-relief fades
 
 /// Cells around a place along an axis, within those that have neighbours on both sides.
 void choose_cells(double place, int count, int wanted, int& first, int& number) {
@@ -188,7 +188,8 @@ NearWindow near_window(const BlockLayout& layout, double cell_size, double x, do
   NearWindow near;
   near.divisions = std::clamp(odd(std::min(cell_size / apart, double{most_divisions})), 3, most_divisions);
   near.ripples = cell_size / near.divisions <= ripple_wavelength / 4 || !(ripple_wavelength > 0);
-  const bool seen = apart <= coarsest && apart < cell_size && cell_size / near.divisions <= coarsest;
+  const bool seen = apart <= coarsest_near_ground && apart < cell_size &&
+                    cell_size / near.divisions <= coarsest_near_ground;
   if (!seen || layout.width() < 4 || layout.height() < 4) return {};
   const int cells = std::max(1, points_in_a_row / near.divisions);
   int width = 0, height = 0;

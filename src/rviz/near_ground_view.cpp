@@ -72,8 +72,10 @@ void NearGroundView::update(const Ogre::Camera& camera, int viewport_height, con
   if (node_.empty() || elevation == maps.end()) return;
   const LayerMap& map = *elevation->second;
   const render::View view = scene_.view_of(camera, viewport_height);
+  const bool near = pixels <= render::coarsest_near_ground * scene_.most_pixels_per_metre(view);
   const std::optional<render::Point> seen =
-      render::first_hit(field_of(map, scene_.look().vertical_exaggeration), view.middle());
+      near ? render::first_hit(field_of(map, scene_.look().vertical_exaggeration), view.middle())
+           : std::nullopt;
   Question question;
   question.step = map.info().step;
   if (seen)

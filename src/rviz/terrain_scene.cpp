@@ -94,6 +94,12 @@ render::View TerrainScene::view_of(const Ogre::Camera& camera, int viewport_heig
   return desert_sim::view_of(camera, viewport_height, *parent_);
 }
 
+double TerrainScene::most_pixels_per_metre(const render::View& view) const {
+  double most = 0;
+  for (const render::Box& box : boxes_as_seen()) most = std::max(most, view.pixels_per_metre(box));
+  return most;
+}
+
 std::vector<render::Box> TerrainScene::boxes_as_seen() const {
   std::vector<render::Box> boxes = boxes_;
   for (render::Box& box : boxes) {

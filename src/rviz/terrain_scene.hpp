@@ -41,6 +41,8 @@ class TerrainScene {
   const render::TerrainGrid& grid() const { return grid_; }
   /// In the terrain's frame, with heights as they are drawn.
   render::View view_of(const Ogre::Camera& camera, int viewport_height) const;
+  /// The pixels that a metre takes at most anywhere on the terrain.
+  double most_pixels_per_metre(const render::View& view) const;
   /// Shows this ground between the centres of the outermost of `cells`, in place of the blocks there, in the
   /// same frame as they leave it out. An empty rectangle shows none.
   void set_near_ground(const render::CellRectangle& cells, render::Mesh ground);
