@@ -90,7 +90,7 @@ void trace(E& exec, const TerrainView& t, const StepInputs& in, const Dice& dice
            const GrainPaths& paths) {
   const Wind wind(in.particle, in.above);
   if (!(wind.shear_velocity > 0.0f)) {
-    for_each_item(exec, paths.number, NoPath{paths.counts});
+    for_each_item(exec, paths.number, NoPath{paths});
     return;
   }
   const Downwind order(t.grid, in.above);

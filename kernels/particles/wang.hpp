@@ -139,6 +139,12 @@ struct GrainPaths {
   PathPoint* points;  ///< of path n from n · most_points on
   int* counts;        ///< of points of each path; 0 where the wind lifts nothing
 
+  DESERT_HD PathPoint* path(int n) const { return points + static_cast<std::size_t>(n) * most_points; }
+  /// Path n has so many points; the rest of its memory is 0.
+  DESERT_HD void end(int n, int count) const {
+    counts[n] = count;
+    for (int k = count; k < most_points; ++k) path(n)[k] = {0.0f, 0.0f, 0.0f};
+  }
   /// Where grain n starts: spread evenly over the terrain (R2 sequence).
   DESERT_HD int cell(int n, const Grid& grid) const {
     const double east = (n + 0.5) * 0.7548776662466927, north = (n + 0.5) * 0.5698402909980532;

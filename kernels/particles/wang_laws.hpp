@@ -221,8 +221,8 @@ struct LiftOff {
 };
 
 struct NoPath {
-  int* counts;
-  DESERT_HD void operator()(int n) const { counts[n] = 0; }
+  GrainPaths paths;
+  DESERT_HD void operator()(int n) const { paths.end(n, 0); }
 };
 
 /// The ways of grains that a step would lift off some cells, for somebody who looks; nothing moves.
@@ -248,25 +248,26 @@ struct TraceGrain {
     DESERT_HD void landed(const Grain& g) const { put(g); }
   };
 
-  DESERT_HD void operator()(int n) const {
+  DESERT_HD void operator()(int n) const { paths.end(n, follow(n)); }
+  /// Writes the points of a way, and says how many.
+  DESERT_HD int follow(int n) const {
     const Flights& flights = lift_off.flights;
     const Grid& grid = flights.order.grid;
-    int& count = paths.counts[n];
-    count = 0;
     const int i = paths.cell(n, grid), y = i / grid.width, x = i - y * grid.width;
-    if (flights.solid(i)) return;
+    if (flights.solid(i)) return 0;
     const float u = lift_off.shear_velocity_at(flights.columns[flights.order.slot(x, y)]);
-    if (lift_off.lifted_at(x, y, i, u) == 0) return;
+    if (lift_off.lifted_at(x, y, i, u) == 0) return 0;
     RandomSequence words{lift_off.flight.word(i)};
     RandomSequence place = words;  // the grain draws its place from the same dice
     const Bed bed = flights.bed_from(x, y, place);
     const PathPoint start{(static_cast<float>(x) + 0.5f + bed.off_x) * grid.cell_size,
                           (static_cast<float>(y) + 0.5f + bed.off_y) * grid.cell_size,
                           static_cast<float>(bed.reference) * metres_per_quantum};
-    PathPoint* const points = paths.points + static_cast<std::size_t>(n) * paths.most_points;
+    PathPoint* const points = paths.path(n);
     points[0] = {start.x, start.y, start.z + bed.at(0.0f, 0.0f).height};
-    count = 1;
+    int count = 1;
     lift_off.run(x, y, i, u, words, Note{points, &count, paths.most_points, start}, [](int, float) {});
+    return count;
   }
 };
 

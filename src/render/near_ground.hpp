@@ -36,8 +36,8 @@ struct NearWindow {
   bool operator==(const NearWindow& o) const { return cells == o.cells && divisions == o.divisions; }
 };
 /// Points lie as far apart as an odd share of a cell, so that the centres of cells are among them; some 160
-/// in a row, at least half a centimetre apart, and close enough for ripples of this wavelength [m; 0: there are
-/// none] where that takes no more than 2.5 times as many. Empty where they would be farther apart than
+/// in a row, at least half a centimetre apart, and close enough for ripples of this wavelength [m; 0: there
+/// are none] where that takes no more than 2.5 times as many. Empty where they would be farther apart than
 /// coarsest_near_ground, or than cells are, and on grids of less than 4 x 4 cells. The window moves in steps
 /// of a quarter of its size.
 NearWindow near_window(const BlockLayout& layout, double cell_size, double x, double y, double detail,
