@@ -40,6 +40,10 @@ render::NearGround fine_ground(const render::NearWindow& window, const TerrainSu
 
 void NearGroundView::follow(const std::string& node) {
   node_ = node;
+  forget();
+}
+
+void NearGroundView::forget() {
   caller_.cancel();
   answer_ = {};  // waits for a mesh that is being built
   under_way_ = false;

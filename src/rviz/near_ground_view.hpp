@@ -23,6 +23,8 @@ class NearGroundView {
 
   /// Asks this node from now on; nobody for an empty name, and shows none.
   void follow(const std::string& node);
+  /// There is another terrain: drops what is shown, and what is on its way.
+  void forget();
   /// Asks anew: the ground is to look different.
   void touch() { asked_ = {}; }
   /// Shows what has come, and asks for what the camera sees now. Call it in each frame. `maps`: those of the

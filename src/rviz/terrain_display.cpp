@@ -223,6 +223,7 @@ void TerrainDisplay::take_elevation(const CollectedChange& change_of_elevation) 
   const LayerMap::Info& info = change_of_elevation.map->info();
   if (change_of_elevation.replaced) {
     properties_->forget_maps();
+    near_ground_->forget();
     fit_pending_ = true;
     scene_->set_grid(static_cast<int>(info.width), static_cast<int>(info.height), info.cell_size,
                      windows_of(maps_, properties_->reference()));

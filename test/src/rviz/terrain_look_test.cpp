@@ -4,11 +4,16 @@
 #include <desert_sim/Appearance.h>
 #include <desert_sim/GetSubmap.h>
 #include <desert_sim/WindField.h>
+#include <ros/callback_queue.h>
+#include <ros/spinner.h>
 #include <rviz/properties/status_property.h>
 
 #include <QColor>
+#include <atomic>
 #include <cmath>
+#include <condition_variable>
 #include <cstdlib>
+#include <mutex>
 
 #include "test/src/rviz/terrain_fixture.hpp"
 
@@ -24,20 +29,40 @@ void save_picture(Window& window, const std::string& name) {
     window.save(std::string(folder) + "/" + name);
 }
 
-/// Answers ~get_submap with ripples across the wind, or refuses.
+/// Answers ~get_submap with ripples across the wind, or refuses; in a thread of its own, so that an answer
+/// can be held back while frames are drawn.
 class FineGround {
  public:
-  explicit FineGround(const std::string& name) {
+  explicit FineGround(const std::string& name) : spinner_(1, &queue_) {
+    node_.setCallbackQueue(&queue_);
     service_ = node_.advertiseService(name + "/get_submap", &FineGround::answer, this);
+    spinner_.start();
   }
-  void refuse(const std::string& reason) { reason_ = reason; }
+  ~FineGround() {
+    hold(false);
+    service_.shutdown();
+    spinner_.stop();
+  }
+  void refuse(const std::string& reason) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    reason_ = reason;
+  }
+  /// From now on no answer is given until it is called with false.
+  void hold(bool on) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    held_ = on;
+    changed_.notify_all();
+  }
   int calls() const { return calls_; }
+  int answers() const { return answers_; }
   double resolution() const { return resolution_; }
 
  private:
   bool answer(desert_sim::GetSubmapRequest& r, desert_sim::GetSubmapResponse& response) {
     ++calls_;
     resolution_ = r.resolution;
+    std::unique_lock<std::mutex> lock(mutex_);
+    changed_.wait(lock, [this] { return !held_; });
     response.success = reason_.empty();
     response.message = reason_;
     response.map.width = static_cast<std::uint32_t>(std::lround(r.length_x / r.resolution));
@@ -48,14 +73,20 @@ class FineGround {
       for (std::uint32_t x = 0; x < response.map.width; ++x)
         response.map.layers[0].data.push_back(
             0.05f * static_cast<float>(std::sin(8 * (west + (x + 0.5) * r.resolution))));
+    ++answers_;
     return true;
   }
 
+  ros::CallbackQueue queue_;
   ros::NodeHandle node_;
   ros::ServiceServer service_;
+  std::mutex mutex_;  ///< guards the next two
   std::string reason_;
-  int calls_ = 0;
-  double resolution_ = 0;
+  bool held_ = false;
+  std::condition_variable changed_;
+  std::atomic<int> calls_{0}, answers_{0};
+  std::atomic<double> resolution_{0};
+  ros::AsyncSpinner spinner_;
 };
 
 TEST_F(TerrainDisplay, MicroReliefIsAShapeNearTheCamera) {
@@ -105,6 +136,28 @@ TEST_F(TerrainDisplay, WhyThereIsNoMicroReliefIsAStatus) {
   EXPECT_TRUE(window_->run_until([&] { return number(display, "near_triangles") > 0; }));
   EXPECT_TRUE(
       window_->run_until([&] { return status(display, "Micro Relief").level == StatusProperty::Ok; }));
+}
+
+// Fine ground of the terrain before does not fit into the grid of another one.
+TEST_F(TerrainDisplay, MicroReliefOfATerrainBeforeIsDroppedHoweverLateItComes) {
+  MadeUpNode node("/replaced");
+  FineGround fine("/replaced");
+  rviz::Display* const display = show(node, "/replaced", 128, flat);
+  window_->look_from_above(100, 100, 60);
+  EXPECT_TRUE(window_->run_until([&] { return number(display, "near_triangles") > 0; }));
+  fine.hold(true);
+  const int calls = fine.calls(), answers = fine.answers();
+  node.update(0, 0, 4, 4, [](int, int) { return 0.5f; });
+  EXPECT_TRUE(window_->run_until([&] { return fine.calls() > calls; })) << "the ground has changed";
+  node.keyframe(32, 32, flat);
+  EXPECT_TRUE(window_->run_until([&] {
+    return status(display, "Terrain").text.find("32 x 32") != std::string::npos;
+  })) << status(display, "Terrain").text;
+  EXPECT_EQ(number(display, "near_triangles"), 0);
+  fine.hold(false);
+  EXPECT_TRUE(window_->run_until([&] { return fine.answers() > answers; }));
+  window_->run_frames(30);
+  EXPECT_EQ(number(display, "near_triangles"), 0);
 }
 
 /// The colour in the middle of the picture.
