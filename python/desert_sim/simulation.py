@@ -137,7 +137,7 @@ class Simulation:
         return self.call("edit_plants", EditPlants, _brush(request, frame, fields))
 
     def undo(self, stroke=""):
-        """Takes back the newest stroke of edits, or that of this name."""
+        """Takes back the newest stroke of edits and settings, or that of this name; where none is left, the last reset or load."""
         return self.call("undo", Undo, stroke)
 
     def redo(self, stroke=""):
@@ -146,34 +146,35 @@ class Simulation:
 
     # ---- wind and weather
 
-    def set_wind(self, speed=0.0, direction_deg=0.0, ramp=0.0, vector=None):
+    def set_wind(self, speed=0.0, direction_deg=0.0, ramp=0.0, vector=None, stroke=""):
         """A constant wind high above the ground, from now on.
 
         speed           [m/s]
         direction_deg   to where the air moves, counter-clockwise from +x
         ramp            time of the change [s of simulated time]
         vector          (x, y) [m/s] in place of speed and direction
+        stroke          calls of one name are undone together
         """
-        request = SetWindRequest(speed=speed, direction_deg=direction_deg, ramp=ramp)
+        request = SetWindRequest(speed=speed, direction_deg=direction_deg, ramp=ramp, stroke=stroke)
         if vector is not None:
             request.use_vector, request.vector = True, Vector3(vector[0], vector[1], 0.0)
         return self.call("set_wind", SetWind, request)
 
-    def set_wind_schedule(self, segments, kind="timeline", repeat=False, hold_time=0.0, seed=0):
+    def set_wind_schedule(self, segments, kind="timeline", repeat=False, hold_time=0.0, seed=0, stroke=""):
         """A timeline of winds, or (kind="rose") a wind rose.
 
         segments   dicts of direction_deg, speed [m/s], duration, ramp [s of simulated time] (timeline), probability (rose)
         hold_time  of a rose: time between draws [s of simulated time]
         """
         segments = [WindScheduleSegment(**segment) for segment in segments]
-        return self.call("set_wind_schedule", SetWindSchedule, kind, segments, repeat, hold_time, seed)
+        return self.call("set_wind_schedule", SetWindSchedule, kind, segments, repeat, hold_time, seed, stroke)
 
     def edit_wind(self, operation, frame="", **fields):
         """Adds, changes, removes or clears local features of the wind; fields as in srv/EditWind.srv: id, kind, center, radius,
         speed, ..."""
         return self.call("edit_wind", EditWind, _brush(EditWindRequest(operation=operation), frame, fields))
 
-    def set_weather(self, ramp=0.0, **fields):
+    def set_weather(self, ramp=0.0, stroke="", **fields):
         """Rain, evaporation, springs, sea and waves from now on: the fields that are named change, and no others.
 
         fields   rain_rate [m/s], rain_share, evaporation [1/s], ground_evaporation, sea (none, border, everywhere), sea_level
@@ -182,7 +183,7 @@ class Simulation:
         """
         if "springs" in fields:
             fields["springs"] = [WaterSpring(**spring) for spring in fields["springs"]]
-        return self.call("set_weather", SetWeather, SetWeatherRequest(change=list(fields), ramp=ramp, **fields))
+        return self.call("set_weather", SetWeather, SetWeatherRequest(change=list(fields), ramp=ramp, stroke=stroke, **fields))
 
     def set_parameters(self, parameters):
         """Live parameters of the scenario and of topics, whole or not at all: {"saltation.lift": 0.3, "step_rate": 20}.
@@ -228,9 +229,9 @@ class Simulation:
                                         values)
         return maps
 
-    def apply_settings(self, settings, ramp=0.0):
+    def apply_settings(self, settings, ramp=0.0, stroke=""):
         """Parameters and lists that can change while it runs: ("saltation.lift=0.4", "species.0.max_radius=2")."""
-        return self.call("apply_settings", ApplySettings, list(settings), ramp)
+        return self.call("apply_settings", ApplySettings, list(settings), ramp, stroke)
 
     def get_scenario(self, start=False):
         """The scenario as it is now, or at its start, with all parameters: .name and .yaml."""

@@ -225,10 +225,10 @@ void EditClient::paint(Stroke& stroke, const render::Capsule& capsule) {
 void EditClient::call_turn(bool redo) {
   try {
     const Undo::Response answer = call<Undo>(redo ? "redo" : "undo", {});
-    const std::string missing = missing_text(answer);
-    report(true, (redo ? "Redone" : "Undone") + (missing.empty() ? "" : ", " + missing) + "; " +
-                     std::to_string(answer.undoable) + " strokes can be undone, " +
-                     std::to_string(answer.redoable) + " redone");
+    const std::string what = turn_text(answer);
+    report(true, (redo ? "Redone" : "Undone") + (what.empty() ? "" : ", " + what) + "; " +
+                     std::to_string(answer.undoable) + " can be undone, " + std::to_string(answer.redoable) +
+                     " redone");
   } catch (const ConfigError& error) {
     report(false, error.what());
   }

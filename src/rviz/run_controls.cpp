@@ -85,7 +85,7 @@ QWidget* RunControls::make_rate_row() {
 }
 
 QWidget* RunControls::make_undo_row() {
-  undo_ = button("undo", "Undo", "Take back the stroke that was painted last");
+  undo_ = button("undo", "Undo", "Take back what was painted or set last; then the last reset or load");
   redo_ = button("redo", "Redo", "Give back what was undone last");
   auto* const row = new QWidget;
   auto* const layout = new QHBoxLayout(row);
@@ -99,7 +99,7 @@ QWidget* RunControls::make_undo_row() {
 
 void RunControls::turn(const char* service) {
   link_.call<Undo>(undo_error_, service, {}, [this](const UndoResponse& answer) {
-    if (const std::string text = missing_text(answer); !text.empty()) undo_error_->show_note(text);
+    if (const std::string text = turn_text(answer); !text.empty()) undo_error_->show_note(text);
   });
 }
 

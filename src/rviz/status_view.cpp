@@ -94,7 +94,7 @@ std::string hint(Presence presence, const SimulationStatus* status, const std::s
     return "It waits for /clock: play the bag, or start the simulator.";
   if (status->lag > long_lag) return "It is late: choose a lower rate, a smaller grid, or a GPU.";
   if (status->state == SimulationStatus::PAUSED)
-    return status->undoable > 0 ? "Paused: undo takes back the last stroke exactly."
+    return status->undoable > 0 ? "Paused: undo takes back the last change exactly."
                                 : "Paused: press Run, or make single steps.";
   if (std::hypot(status->wind_above.x, status->wind_above.y) < slow_wind)
     return "There is no wind: drag the needle of the dial.";

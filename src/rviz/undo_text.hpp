@@ -7,7 +7,8 @@
 
 namespace desert_sim {
 
-/// What an undo or redo could not bring back; empty if it was exact.
-std::string missing_text(const Undo::Response& answer);
+/// What of settings and terrain an undo or redo has set, and what it could not bring back; empty if it was an
+/// exact one of edits.
+std::string turn_text(const Undo::Response& answer);
 
 }  // namespace desert_sim

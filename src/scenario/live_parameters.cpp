@@ -25,8 +25,7 @@ std::set<std::string> live_paths() {
   return paths;
 }
 
-void collect_leaf_values(const YAML::Node& node, const std::string& path,
-                         std::map<std::string, std::string>& found) {
+void collect_leaf_values(const YAML::Node& node, const std::string& path, ParameterTexts& found) {
   if (node.IsMap()) {
     for (const auto& entry : node)
       collect_leaf_values(entry.second, (path.empty() ? "" : path + ".") + entry.first.Scalar(), found);
@@ -39,10 +38,23 @@ void collect_leaf_values(const YAML::Node& node, const std::string& path,
   found[path] = out.c_str();
 }
 
-std::map<std::string, std::string> collect_leaf_values(const Scenario& scenario) {
-  std::map<std::string, std::string> found;
-  collect_leaf_values(YAML::Load(dump_scenario(scenario)), "", found);
-  return found;
+void remove_leaf(YAML::Node root, const std::string& path) {
+  const std::size_t dot = path.find('.');
+  if (dot == std::string::npos) {
+    root.remove(path);
+    return;
+  }
+  const YAML::Node section = root[path.substr(0, dot)];
+  if (section.IsMap()) remove_leaf(section, path.substr(dot + 1));
+}
+
+/// What a scenario that was read anew cannot have from its text.
+Scenario with_origin_of(Scenario scenario, const Scenario& origin) {
+  scenario.name = origin.name;
+  scenario.folder = origin.folder;
+  scenario.projection = origin.projection;
+  scenario.wind_series = origin.wind_series;
+  return scenario;
 }
 
 /// Lists beside the sections that can change, whole or in part.
@@ -115,18 +127,33 @@ Scenario with_live_settings(const Scenario& scenario, const Settings& settings) 
   Scenario changed = parse_scenario(root, "set_parameters", "");
   check_species_kept(scenario, changed, errors);
   errors.throw_if_any();
-  changed.name = scenario.name;
-  changed.folder = scenario.folder;
-  changed.projection = scenario.projection;
-  changed.wind_series = scenario.wind_series;
-  return changed;
+  return with_origin_of(std::move(changed), scenario);
+}
+
+ParameterTexts parameter_texts(const Scenario& scenario) {
+  ParameterTexts texts;
+  collect_leaf_values(YAML::Load(dump_scenario(scenario)), "", texts);
+  return texts;
+}
+
+Scenario with_parameter_texts(const Scenario& scenario,
+                              const std::map<std::string, std::optional<std::string>>& texts,
+                              const std::string& what) {
+  const YAML::Node root = YAML::Load(dump_scenario(scenario));
+  for (const auto& [path, text] : texts) {
+    if (text)
+      apply_setting(root, path + "=" + *text);
+    else
+      remove_leaf(root, path);
+  }
+  return with_origin_of(parse_scenario(root, what, ""), scenario);
 }
 
 std::vector<std::pair<std::string, std::string>> changed_parameters(const Scenario& before,
                                                                     const Scenario& now) {
-  const std::map<std::string, std::string> old = collect_leaf_values(before);
+  const ParameterTexts old = parameter_texts(before);
   std::vector<std::pair<std::string, std::string>> changed;
-  for (const auto& [path, value] : collect_leaf_values(now)) {
+  for (const auto& [path, value] : parameter_texts(now)) {
     const auto found = old.find(path);
     if (found == old.end() || found->second != value) changed.emplace_back(path, value);
   }

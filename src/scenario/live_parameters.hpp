@@ -2,6 +2,8 @@
 /// Parameters of a scenario that can change while its simulation runs.
 
 #include <functional>
+#include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -56,6 +58,15 @@ void for_each_live_parameter(const Scenario& scenario, Visit&& visit) {
 /// can begin to live (vegetation.enabled), but not end. `run.timeline` is replaced whole. Throws ConfigError
 /// that lists all settings that cannot change, are unknown, or have an invalid value.
 Scenario with_live_settings(const Scenario& scenario, const Settings& settings);
+
+/// All parameters as YAML in flow style, by path; a list counts as one value.
+using ParameterTexts = std::map<std::string, std::string>;
+ParameterTexts parameter_texts(const Scenario& scenario);
+/// A copy of `scenario` with what parameter_texts() said of another one; none: the parameter is not there.
+/// Whether they can change while a simulation runs is for the caller to know. `what` is named in errors.
+Scenario with_parameter_texts(const Scenario& scenario,
+                              const std::map<std::string, std::optional<std::string>>& texts,
+                              const std::string& what);
 
 /// The parameters of `now` that differ from `before`, as path and value; a list counts as one value.
 std::vector<std::pair<std::string, std::string>> changed_parameters(const Scenario& before,

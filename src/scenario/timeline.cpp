@@ -138,6 +138,10 @@ int Ramp::step_index_at(double time) const {
   return std::clamp(static_cast<int>(std::floor((time - start) / duration * step_count)), 0, step_count - 1);
 }
 
+void sort_by_path(std::vector<Ramp>& ramps) {
+  std::sort(ramps.begin(), ramps.end(), [](const Ramp& a, const Ramp& b) { return a.path < b.path; });
+}
+
 std::vector<Ramp> extract_ramps(const Scenario& scenario, std::vector<std::string>& settings, double time,
                                 double duration) {
   std::vector<Ramp> ramps;

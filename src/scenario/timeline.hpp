@@ -74,6 +74,9 @@ constexpr auto parameter_table(const Ramp*) {
 }
 static_assert(table_is_complete<Ramp>());
 
+/// The order in which a simulation holds its ramps.
+void sort_by_path(std::vector<Ramp>& ramps);
+
 /// Adds an error for each value with which the ramp could not be going on at `time` [s]: a path that is no
 /// floating-point parameter or one that cannot change, ends out of its range, a start that lies ahead.
 void check_ramp(const Scenario& scenario, const Ramp& ramp, double time, const std::string& key,

@@ -18,7 +18,7 @@ namespace desert_sim {
 
 namespace {
 
-constexpr int journal_version = 2;
+constexpr int journal_version = 3;
 
 /// One line of YAML in flow style.
 class Line {
@@ -114,8 +114,8 @@ Journal read_journal(const std::string& path) {
     if (n == 1) {
       const std::uint64_t version = number("journal");
       if (version < 1 || version > journal_version)
-        throw ConfigError(source + ": is a journal of version " + std::to_string(version) + " (allowed: 1, " +
-                          std::to_string(journal_version) + ")");
+        throw ConfigError(source + ": is a journal of version " + std::to_string(version) +
+                          " (allowed: 1 to " + std::to_string(journal_version) + ")");
       journal.version = static_cast<int>(version);
       journal.scenario_hash = number("scenario_hash");
       journal.backend = node["backend"] ? node["backend"].Scalar() : "";

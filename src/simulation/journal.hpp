@@ -35,7 +35,7 @@ struct Journal {
     std::uint64_t tick;
     Command command;
   };
-  int version = 2;
+  int version = 3;  ///< before 3, undo knew edits alone: see Session::undo_edits_alone()
   std::uint64_t scenario_hash = 0;
   std::string backend;
   std::size_t undo_memory = default_undo_memory;  ///< of the session [bytes]; on it depends what undo finds

@@ -37,7 +37,7 @@ std::uint64_t scenario_hash(const Scenario& scenario) {
 
 Session::Session(const Scenario& scenario, const RasterLoader& load_raster, const std::string& backend,
                  int threads, const std::string& journal_path, std::size_t undo_memory)
-    : load_raster_(load_raster), undo_memory_(undo_memory) {
+    : load_raster_(load_raster), undo_memory_(undo_memory), scenes_(undo_memory) {
   Scenario resolved = scenario;
   resolve_grid(resolved, load_raster_);
   read_wind_series(resolved);
@@ -56,6 +56,7 @@ Session::Session(const RasterLoader& load_raster, const std::string& backend, in
                  std::size_t undo_memory)
     : load_raster_(load_raster),
       undo_memory_(undo_memory),
+      scenes_(undo_memory),
       exec_(make_exec(backend, threads, &backend_choice_)) {}
 
 std::unique_ptr<Session> Session::from_checkpoint(const std::string& checkpoint,
@@ -68,6 +69,7 @@ std::unique_ptr<Session> Session::from_checkpoint(const std::string& checkpoint,
 
 void Session::replace_simulation(std::unique_ptr<Simulation> simulation) {
   simulation->commands().history().set_memory(undo_memory_);
+  simulation->commands().history().remember_settings(!undo_edits_alone_);
   simulation_ = std::move(simulation);
   warned_.clear();
 }
@@ -109,6 +111,16 @@ Scenario Session::read_scenario(const command::LoadScenario& command, const std:
                              parent_folder(command.path));
 }
 
+namespace {
+
+CommandResult replaced_terrain() {
+  CommandResult result;
+  result.replaces_terrain = true;
+  return result;
+}
+
+}  // namespace
+
 std::uint64_t Session::load_scenario(const command::LoadScenario& command) {
   const std::string& folder = command.folder.empty() ? folder_ : command.folder;
   Scenario next = read_scenario(command, folder);
@@ -135,15 +147,15 @@ std::uint64_t Session::load_scenario(const command::LoadScenario& command) {
   if (command.hash != 0 && command.hash != hash)
     throw ConfigError(command.path +
                       ": is not the scenario that the journal recorded (its state hash differs)");
-  replace_simulation(std::move(simulation));
-  start_folder_ = folder;
+  begin_scene(std::move(simulation), folder);
   if (!command.terrain_only) warn_of_settings_without_effect(simulation_->state().start);
   return hash;
 }
 
 CommandResult Session::execute(const command::Reset&, bool, Command&) {
-  replace_simulation(simulation_at_start(*exec_, simulation_->state().start, load_raster_, start_folder_));
-  return {};
+  begin_scene(simulation_at_start(*exec_, simulation_->state().start, load_raster_, start_folder_),
+              start_folder_);
+  return replaced_terrain();
 }
 
 CommandResult Session::execute(const command::LoadCheckpoint& load, bool, Command& journalled) {
@@ -152,10 +164,9 @@ CommandResult Session::execute(const command::LoadCheckpoint& load, bool, Comman
   if (load.hash != 0 && load.hash != hash)
     throw ConfigError(load.path +
                       ": is not the checkpoint that the journal recorded (its state hash differs)");
-  replace_simulation(std::move(loaded));
-  start_folder_ = folder_;
+  begin_scene(std::move(loaded), folder_);
   journalled = command::LoadCheckpoint{load.path, hash};
-  return {};
+  return replaced_terrain();
 }
 
 CommandResult Session::execute(const command::LoadScenario& load, bool, Command& journalled) {
@@ -163,7 +174,7 @@ CommandResult Session::execute(const command::LoadScenario& load, bool, Command&
   loaded.hash = load_scenario(load);
   loaded.folder.clear();
   journalled = loaded;
-  return {};
+  return replaced_terrain();
 }
 
 namespace {
@@ -200,7 +211,7 @@ CommandResult Session::replay(const Command& recorded) {
   return apply(command::SetParameters{
       without_former_keys(settings->settings, simulation_->scenario().get<SandParameters>().model,
                           "a recorded command"),
-      settings->ramp});
+      settings->ramp, settings->stroke});
 }
 
 std::vector<std::string> Session::journal_files() const {

@@ -6,6 +6,7 @@
 #include <set>
 #include <string>
 
+#include "src/simulation/former_scenes.hpp"
 #include "src/simulation/journal.hpp"
 #include "src/simulation/simulation.hpp"
 
@@ -36,6 +37,9 @@ class Session {
   /// From now on, commands read scenarios and checkpoints below `folder` only, as InputFile does. Which
   /// rasters may be read is for the raster loader to decide.
   void confine_commands(const std::string& folder) { folder_ = folder; }
+  /// From now on, undo knows strokes of edits alone: neither settings nor resets and loads. What a journal of
+  /// version 1 or 2 was written with.
+  void undo_edits_alone();
 
   /// Logs a process's warning (Process::warning) once for each simulation, when it begins.
   void step();
@@ -44,6 +48,9 @@ class Session {
   CommandResult apply(const Command& command, bool with_change = false);
   /// Likewise for a command of a journal, which an earlier version may have written.
   CommandResult replay(const Command& recorded);
+  /// How many strokes, resets and loads can be undone, and redone, now.
+  int undoable() const { return simulation_->commands().history().undoable() + scenes_.undoable(); }
+  int redoable() const { return simulation_->commands().history().redoable() + scenes_.redoable(); }
   /// Steps done in this session, through resets and loads; what the journal counts in.
   std::uint64_t ticks() const { return ticks_; }
 
@@ -62,6 +69,16 @@ class Session {
   Session(const RasterLoader& load_raster, const std::string& backend, int threads, std::size_t undo_memory);
   /// The history ends with the simulation that it belongs to.
   void replace_simulation(std::unique_ptr<Simulation> simulation);
+  /// Likewise where a reset or load replaces it, which undo can take back.
+  void begin_scene(std::unique_ptr<Simulation> simulation, const std::string& start_folder);
+  /// Whether the present simulation can be kept for undo.
+  bool can_keep_scene() const;
+  FormerScenes::Scene present_scene() const;
+  CommandResult turn_scene(bool redo);
+  CommandResult execute(const command::Undo& command, bool with_change, Command& journalled);
+  CommandResult execute(const command::Redo& command, bool with_change, Command& journalled);
+  template <class Turn>
+  CommandResult turn(const Turn& command, bool redo, bool with_change);
   /// Each replaces what the journal will have by what a replay needs to find the same again.
   CommandResult execute(const command::Reset& command, bool with_change, Command& journalled);
   CommandResult execute(const command::LoadCheckpoint& command, bool with_change, Command& journalled);
@@ -79,7 +96,9 @@ class Session {
   RasterLoader load_raster_;
   std::string folder_;        ///< that commands read files below; empty: they read any file
   std::string start_folder_;  ///< likewise the checkpoint of the start, when a reset goes back to it
-  std::size_t undo_memory_;   ///< [bytes]
+  std::size_t undo_memory_;   ///< for strokes, and again for former scenes [bytes]
+  bool undo_edits_alone_ = false;
+  FormerScenes scenes_;
   std::string backend_choice_;
   std::unique_ptr<Exec> exec_;
   std::unique_ptr<Simulation> simulation_;

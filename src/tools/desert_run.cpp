@@ -101,6 +101,7 @@ std::unique_ptr<Session> begin_session(const Options& o, const Journal& journal,
   auto session = std::make_unique<Session>(scenario, raster_loader(o.has("all-raster-formats")),
                                            o.text("backend", "auto"), threads, "", journal.undo_memory);
   if (o.has("replay")) session->require_journal_of_this_scenario(journal, o.text("replay", ""));
+  if (journal.version < 3) session->undo_edits_alone();
   return session;
 }
 
@@ -111,6 +112,7 @@ std::unique_ptr<Session> resume_session(const Options& o, const Journal& journal
   if (o.positional().empty()) {
     session = Session::from_checkpoint(checkpoint, raster_loader(o.has("all-raster-formats")),
                                        o.text("backend", "auto"), threads, journal.undo_memory);
+    if (journal.version < 3) session->undo_edits_alone();
   } else {
     session = begin_session(o, journal, threads);
     session->apply(command::LoadCheckpoint{checkpoint, 0});

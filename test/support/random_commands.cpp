@@ -76,6 +76,7 @@ void RandomCommands::add_points(Edit& edit) {
 
 command::SetWindSchedule RandomCommands::schedule() {
   command::SetWindSchedule command;
+  command.stroke = stroke();
   WindRegime& regime = command.regime;
   randomise(static_cast<WindRegimeParameters&>(regime));
   if (one_in(20)) regime.start_time = nan;  // which is set when the command is applied
@@ -90,6 +91,7 @@ command::SetWindSchedule RandomCommands::schedule() {
 command::EditWind RandomCommands::wind_edit(const Simulation& simulation) {
   command::EditWind edit;
   randomise(edit);
+  edit.stroke = stroke();
   randomise(edit.feature);
   if (!one_in(20)) edit.feature.begin = between(0, 20), edit.feature.end = one_in(2) ? 0 : between(20, 40);
   if (one_in(3)) {
@@ -146,6 +148,7 @@ command::EditPlants RandomCommands::plant_edit(const Simulation& simulation) {
 /// Limits of memory and time are another matter: what makes a step of a small terrain last for seconds stays.
 command::SetParameters RandomCommands::settings(const Simulation& simulation) {
   command::SetParameters command;
+  command.stroke = stroke();
   Scenario wanted = simulation.state().present_scenario();
   const std::size_t count = 1 + below(3);
   for (std::size_t n = 0; n < count; ++n) {
@@ -193,6 +196,7 @@ Command RandomCommands::next(const Simulation& simulation, const std::vector<std
     case 0: {
       command::SetWind wind;
       randomise(wind);
+      wind.stroke = stroke();
       return wind;
     }
     case 1:

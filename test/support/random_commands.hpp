@@ -3,11 +3,18 @@
 
 #include <random>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "src/simulation/simulation.hpp"
 
 namespace desert_sim::test {
+
+/// Of commands that can belong to a stroke.
+template <class C, class = void>
+constexpr bool has_stroke = false;
+template <class C>
+constexpr bool has_stroke<C, std::void_t<decltype(C::stroke)>> = true;
 
 class RandomCommands {
  public:

@@ -65,6 +65,8 @@ void set_returned(const ReachedState& reached, UndoResponse& response) {
   }
   response.plants = result.plants;
   response.missing_plants = result.returned.missing_plants;
+  response.settings = result.returned.settings;
+  response.terrain_replaced = result.replaces_terrain;
   set_rectangle(result.changed_cells, response);
   response.step = reached.moment.step;
   response.undoable = static_cast<std::uint32_t>(result.undoable);
@@ -92,11 +94,16 @@ void add_edit_services(Services& services) {
         response.step = reached.moment.step;
         c.publisher.status_changed();
       });
-  services.add<Undo>("undo", [&c, terrain_diff](const UndoRequest& request, UndoResponse& response) {
-    set_returned(apply_and_tell(c, terrain_diff, command::Undo{request.stroke}), response);
+  const auto turn = [&services, &c, terrain_diff](const Command& command, UndoResponse& response) {
+    const ReachedState reached = apply_and_tell(c, terrain_diff, command);
+    if (reached.result.replaces_terrain) services.terrain_replaced();
+    set_returned(reached, response);
+  };
+  services.add<Undo>("undo", [turn](const UndoRequest& request, UndoResponse& response) {
+    turn(command::Undo{request.stroke}, response);
   });
-  services.add<Undo>("redo", [&c, terrain_diff](const UndoRequest& request, UndoResponse& response) {
-    set_returned(apply_and_tell(c, terrain_diff, command::Redo{request.stroke}), response);
+  services.add<Undo>("redo", [turn](const UndoRequest& request, UndoResponse& response) {
+    turn(command::Redo{request.stroke}, response);
   });
 }
 

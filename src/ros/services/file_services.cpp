@@ -68,14 +68,14 @@ class FilesLock {
 /// Starts the simulation from what is in files.
 class Loader {
  public:
-  Loader(const ServiceContext& context, std::shared_ptr<FilesLock> files)
-      : c_(context), files_(std::move(files)) {}
+  Loader(Services& services, std::shared_ptr<FilesLock> files)
+      : services_(services), files_(std::move(files)) {}
 
   ReachedState load(const Command& command) {
     auto lock = files_->lock();
-    const ReachedState reached = c_.simulation.apply(command, true).get();
+    const ReachedState reached = services_.context().simulation.apply(command, true).get();
     lock.unlock();
-    terrain_replaced();
+    services_.terrain_replaced();
     return reached;
   }
   /// The hash of the new state.
@@ -86,21 +86,8 @@ class Loader {
   }
 
  private:
-  /// Moves the frame in the middle of the terrain, and publishes all topics.
-  void terrain_replaced() {
-    const SimulationThread::Patience unlimited(0);  // the load has been done, and cannot be refused any more
-    if (c_.frames.has_center()) {
-      // One thread at a time, each with a copy of its own: the last one that moves the frame has seen the
-      // newest terrain.
-      const std::lock_guard<std::mutex> lock(move_center_mutex_);
-      c_.frames.move_center(*c_.simulation.terrain({Layer::elevation}).get().snapshot);
-    }
-    c_.publisher.publish_now(c_.answer_timeout);
-  }
-
-  const ServiceContext& c_;
+  Services& services_;
   std::shared_ptr<FilesLock> files_;
-  std::mutex move_center_mutex_;  ///< held while terrain_replaced() moves the frame
 };
 
 void save_checkpoint(const ServiceContext& c, const SaveCheckpointRequest& request,
@@ -207,7 +194,7 @@ command::LoadScenario new_scenario(const DataFolder& files, const NewScenarioReq
 void add_file_services(Services& services) {
   const ServiceContext& c = services.context();
   const auto files = std::make_shared<FilesLock>();
-  const auto loader = std::make_shared<Loader>(c, files);
+  const auto loader = std::make_shared<Loader>(services, files);
 
   services.add<SaveCheckpoint>("save_checkpoint",
                                [&c](const SaveCheckpointRequest& request, SaveCheckpointResponse& response) {

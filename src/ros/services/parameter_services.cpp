@@ -11,7 +11,7 @@ void add_parameter_services(Services& services) {
   const ServiceContext& c = services.context();
   services.add<ApplySettings>(
       "apply_settings", [&c](const ApplySettingsRequest& request, ApplySettingsResponse&) {
-        c.simulation.apply(command::SetParameters{request.settings, request.ramp}).get();
+        c.simulation.apply(command::SetParameters{request.settings, request.ramp, request.stroke}).get();
         c.publisher.status_changed();
       });
   services.add<GetScenario>(

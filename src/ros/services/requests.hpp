@@ -21,6 +21,8 @@ command::SetWindSchedule wind_schedule_command(const SetWindScheduleRequest& req
 command::EditWind wind_edit_command(const EditWindRequest& request, const TerrainTransforms& frames);
 command::SetParameters weather_command(const SetWeatherRequest& request);
 /// A message on ~cmd_wind.
+/// All messages on ~cmd_wind are one stroke, until somebody undoes it.
+constexpr const char* cmd_wind_stroke = "cmd_wind";
 command::SetWind cmd_wind_command(const geometry_msgs::Vector3Stamped& message,
                                   const TerrainTransforms& frames);
 command::EditPlants plants_command(const EditPlantsRequest& request, const TerrainTransforms& frames);

@@ -6,6 +6,7 @@
 #include <ros/callback_queue.h>
 #include <ros/node_handle.h>
 
+#include <mutex>
 #include <string>
 #include <utility>
 #include <vector>
@@ -40,6 +41,9 @@ class Services {
   /// Where what add() is given finds the rest of the node.
   const ServiceContext& context() const { return context_; }
 
+  /// After a command that has replaced the terrain: moves the frame in its middle, and publishes all topics.
+  void terrain_replaced();
+
   /// Calls serve(request, response) for each request to ~`name`. What it refuses (ConfigError), or any other
   /// failure, becomes the answer success = false with the reason.
   template <class Service, class Serve>
@@ -62,6 +66,7 @@ class Services {
 
  private:
   ServiceContext context_;
+  std::mutex move_center_mutex_;  ///< held while terrain_replaced() moves the frame
   std::vector<ros::ServiceServer> servers_;
 };
 

@@ -20,6 +20,7 @@ namespace desert_sim {
 command::SetWind wind_command(const SetWindRequest& request) {
   command::SetWind command;
   command.ramp = to_float(request.ramp);
+  command.stroke = request.stroke;
   if (!request.use_vector) {
     require_left_out(request.vector, "vector", "use_vector is false");
     command.speed = to_float(request.speed);
@@ -49,6 +50,7 @@ command::SetWind cmd_wind_command(const geometry_msgs::Vector3Stamped& message,
     throw ConfigError("vector: its vertical component in frame '" + frames.terrain_frame() + "' is " +
                       std::to_string(wind.z()) + " m/s and must be 0: the wind is horizontal");
   command::SetWind command;
+  command.stroke = cmd_wind_stroke;
   command.speed = to_float(std::hypot(wind.x(), wind.y()));
   command.direction_deg = to_float(std::atan2(wind.y(), wind.x()) * degrees_per_radian);
   return command;
@@ -57,6 +59,7 @@ command::SetWind cmd_wind_command(const geometry_msgs::Vector3Stamped& message,
 command::SetWindSchedule wind_schedule_command(const SetWindScheduleRequest& request) {
   constexpr const char* kinds[] = {"timeline", "rose"};
   command::SetWindSchedule command;
+  command.stroke = request.stroke;
   WindRegime& regime = command.regime;
   regime.regime =
       choice_named<int>(kinds, request.kind, "kind") == 0 ? WindRegimeKind::timeline : WindRegimeKind::rose;
@@ -160,6 +163,7 @@ void set_place(const EditWindRequest& request, const tf2::Transform& transform, 
 
 command::EditWind wind_edit_command(const EditWindRequest& request, const TerrainTransforms& frames) {
   command::EditWind command;
+  command.stroke = request.stroke;
   WindFeature& feature = command.feature;
   command.operation = choice_named<WindEdit>(wind_edits, request.operation, "operation");
   feature.id = request.id;
@@ -253,7 +257,7 @@ command::SetParameters weather_command(const SetWeatherRequest& r) {
     if (!changes(number.name)) require_left_out(number.value, number.name, why);
   if (!changes("sea")) require_left_out(r.sea, "sea", why);
   if (!changes("springs")) require_left_out(r.springs, "springs", why);
-  command::SetParameters command{{}, r.ramp};
+  command::SetParameters command{{}, r.ramp, r.stroke};
   for (const std::string& field : r.change) {
     const auto number =
         std::find_if(numbers.begin(), numbers.end(), [&](const Number& n) { return n.name == field; });

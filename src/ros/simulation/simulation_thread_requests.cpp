@@ -24,6 +24,13 @@ std::string busy_message(double seconds) {
   return text;
 }
 
+/// Of a command that has replaced the terrain.
+const char* what_replaces(const Command& command) {
+  if (std::holds_alternative<command::Reset>(command)) return "a reset";
+  if (std::holds_alternative<command::Undo>(command)) return "an undo";
+  return std::holds_alternative<command::Redo>(command) ? "a redo" : "a load";
+}
+
 /// The answer that finish() makes, once `begun` has a copy that is under way. finish() waits for that copy,
 /// on the thread that asks for the answer.
 template <class Answer, class PendingCopy, class Finish>
@@ -57,8 +64,8 @@ std::future<ReachedState> SimulationThread::apply(const Command& command, bool w
     const CommandResult result = session_->apply(command, with_change);
     ++commands_;
     stamp_ = stamp_now();
-    if (command::replaces_terrain(command)) {
-      end_step_requests(std::holds_alternative<command::Reset>(command) ? "a reset" : "a load");
+    if (result.replaces_terrain) {
+      end_step_requests(what_replaces(command));
       ++terrains_;
       timed_steps_ = 0;
       pacer_.restart();
@@ -243,8 +250,8 @@ std::future<StatusReport> SimulationThread::report(bool measure) {
     r.changes = s.commands().describe_changes();
     r.warnings = s.pipeline().warnings();
     r.wind_above = s.state().wind_above();
-    r.undoable = s.commands().history().undoable();
-    r.redoable = s.commands().history().redoable();
+    r.undoable = session_->undoable();
+    r.redoable = session_->redoable();
     r.snapshots = snapshots_;
     if (paused_ && step_requests_.empty()) {
       r.hashed = true;

@@ -103,7 +103,7 @@ struct StatusReport {
   wind::Vector wind_above;
   bool hashed = false;  ///< only while paused
   std::uint64_t hash = 0;
-  int undoable = 0, redoable = 0;    ///< strokes
+  int undoable = 0, redoable = 0;    ///< strokes, resets and loads
   std::uint64_t snapshots = 0;       ///< copies of the terrain so far
   std::size_t layer_bytes = 0;       ///< of the terrain, on the backend's device
   std::size_t memory_available = 0;  ///< on that device [bytes]

@@ -32,13 +32,15 @@ struct SetWind {
   float direction_deg = 0;
   float speed = 0;
   float ramp = 0;
+  std::string stroke{};
 };
 constexpr auto parameter_table(const SetWind*) {
   using P = SetWind;
   return std::make_tuple(parameter("direction_deg", &P::direction_deg, -360, 360, "deg",
                                    "Where the wind blows to, counter-clockwise from +x."),
                          parameter("speed", &P::speed, 0, 100, "m/s", "Speed high above the ground."),
-                         parameter("ramp", &P::ramp, 0, 1e12, "s", "Time in which the wind changes."));
+                         parameter("ramp", &P::ramp, 0, 1e12, "s", "Time in which the wind changes."),
+                         parameter("stroke", &P::stroke, "As of edit_terrain."));
 }
 static_assert(table_is_complete<SetWind>());
 
@@ -47,6 +49,7 @@ static_assert(table_is_complete<SetWind>());
 struct SetWindSchedule {
   static constexpr const char* name = "set_wind_schedule";
   WindRegime regime;
+  std::string stroke{};
 };
 
 /// Adds, changes, removes one local feature of the wind, which `feature.id` names, or removes all (`clear`).
@@ -54,12 +57,14 @@ struct SetWindSchedule {
 struct EditWind {
   static constexpr const char* name = "edit_wind";
   WindEdit operation = WindEdit::add;
-  WindFeature feature;  ///< of remove only `id`, of clear nothing
+  WindFeature feature{};  ///< of remove only `id`, of clear nothing
+  std::string stroke{};
 };
 constexpr auto parameter_table(const EditWind*) {
   using P = EditWind;
   return std::make_tuple(
-      parameter("operation", &P::operation, wind_edits, "What is done with the feature of this id."));
+      parameter("operation", &P::operation, wind_edits, "What is done with the feature of this id."),
+      parameter("stroke", &P::stroke, "As of edit_terrain."));
 }
 
 struct EditParameters {
@@ -185,8 +190,9 @@ struct EditPlants : EditPlantsParameters {
   std::vector<Point> points;  ///< of a polygon its corners, of a capsule the two ends of its axis
 };
 
-/// Takes back what a stroke of EditTerrain and EditPlants commands changed: of the stroke of that name, or,
-/// if it is empty, of the one that was painted or redone last. See EditHistory.
+/// Takes back what a stroke of edits and settings changed: of the stroke of that name, or, if it is empty, of
+/// the one that was painted or redone last. See EditHistory. Where there is none, and the name is empty, it
+/// takes back the reset or load that came last (see FormerScenes).
 struct Undo {
   static constexpr const char* name = "undo";
   std::string stroke;
@@ -196,7 +202,8 @@ constexpr auto parameter_table(const Undo*) {
 }
 static_assert(table_is_complete<Undo>());
 
-/// Takes back an undo: of the stroke of that name, or, if it is empty, of the one that was undone last.
+/// Takes back an undo: of the stroke of that name, or, if it is empty, of the one that was undone last; where
+/// there is none, of a reset or load.
 struct Redo {
   static constexpr const char* name = "redo";
   std::string stroke;
@@ -213,6 +220,7 @@ struct SetParameters {
   static constexpr double longest_ramp = 1e12;
   std::vector<std::string> settings;
   double ramp = 0;
+  std::string stroke{};
 };
 
 /// Back to the scenario's start: terrain, parameters, wind, clock.
@@ -246,13 +254,6 @@ struct LoadScenario {
   std::string folder{};
 };
 
-/// Whether the terrain is another one after the command, perhaps of another shape.
-template <class Command>
-bool replaces_terrain(const Command& command) {
-  return std::holds_alternative<Reset>(command) || std::holds_alternative<LoadCheckpoint>(command) ||
-         std::holds_alternative<LoadScenario>(command);
-}
-
 }  // namespace command
 
 using Command =
@@ -281,13 +282,15 @@ struct ReturnedStroke {
   std::string name;
   std::array<std::optional<Volumes>, material_count> materials;  ///< of those that the stroke had changed
   long long missing_plants = 0;  ///< that have died or were cleared since, or for which there was no room
+  std::vector<std::string> settings;  ///< "path=value" or "path removed" of what was set
 };
 
 struct CommandResult {
   double volume_m3 = 0;  ///< material added (+) or removed (−) by an edit
   double moved_m3 =
       0;  ///< instead of it, of an edit that conserves: from the ring into the shape (+), or back
-  long long plants = 0;  ///< put (+) or taken away (−)
+  long long plants = 0;           ///< put (+) or taken away (−)
+  bool replaces_terrain = false;  ///< perhaps by one of another shape
   CellRectangle changed_cells;
   std::vector<LayerChange> changes;  ///< in `changed_cells`; of an undo one a layer; empty if nobody asked
   ReturnedStroke returned;           ///< of an undo or redo

@@ -116,10 +116,21 @@ C read(Type<C>, const YAML::Node& node, const std::string& source) {
   return read_all<C>(node, source);
 }
 
-void emit(YAML::Emitter& out, const command::SetWindSchedule& schedule) { emit_regime(out, schedule.regime); }
+/// Journals of versions before 3 have none.
+std::string read_stroke(const YAML::Node& node, const std::string& source) {
+  return node["stroke"] ? scalar<std::string>(node, "stroke", source) : "";
+}
+void emit_stroke(YAML::Emitter& out, const std::string& stroke) {
+  out << YAML::Key << "stroke" << YAML::Value << YAML::DoubleQuoted << stroke;
+}
+
+void emit(YAML::Emitter& out, const command::SetWindSchedule& schedule) {
+  emit_regime(out, schedule.regime);
+  emit_stroke(out, schedule.stroke);
+}
 command::SetWindSchedule read(Type<command::SetWindSchedule>, const YAML::Node& node,
                               const std::string& source) {
-  return {read_regime(node, source)};
+  return {read_regime(node, source), read_stroke(node, source)};
 }
 
 /// Only what the operation uses: no other field has been checked.
@@ -207,9 +218,10 @@ std::vector<std::string> read_settings(const YAML::Node& node, const std::string
 void emit(YAML::Emitter& out, const command::SetParameters& parameters) {
   emit_settings(out, parameters.settings);
   out << YAML::Key << "ramp" << YAML::Value << parameters.ramp;
+  emit_stroke(out, parameters.stroke);
 }
 command::SetParameters read(Type<command::SetParameters>, const YAML::Node& node, const std::string& source) {
-  return {read_settings(node, source), scalar<double>(node, "ramp", source)};
+  return {read_settings(node, source), scalar<double>(node, "ramp", source), read_stroke(node, source)};
 }
 
 void emit(YAML::Emitter&, const command::Reset&) {}

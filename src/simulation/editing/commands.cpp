@@ -14,6 +14,7 @@
 #include "src/simulation/editing/plant_edit.hpp"
 #include "src/simulation/editing/terrain_edit.hpp"
 #include "src/simulation/memory/memory.hpp"
+#include "src/simulation/pipeline/scenario_change.hpp"
 #include "src/simulation/processes/processes.hpp"
 
 namespace desert_sim {
@@ -33,10 +34,14 @@ struct Commands::Execution {
   CommandResult operator()(const command::EditTerrain& command) const;
   CommandResult operator()(const command::EditPlants& command) const;
   CommandResult operator()(const command::Undo& command) const {
-    return history.undo(command.stroke, with_change);
+    return turned(history.undo(command.stroke, with_change));
   }
   CommandResult operator()(const command::Redo& command) const {
-    return history.redo(command.stroke, with_change);
+    return turned(history.redo(command.stroke, with_change));
+  }
+  CommandResult turned(CommandResult result) const {
+    if (!result.returned.settings.empty()) commands.read_timeline();
+    return result;
   }
   template <class Replacing>
   CommandResult operator()(const Replacing& command) const {
@@ -51,13 +56,13 @@ CommandResult Commands::apply(const Command& command, bool with_change) {
 namespace {
 
 /// Plants that begin to live determine the layer vegetation, on which still ones may be painted.
-void require_no_still_plants(const SimulationState& state, const Scenario& wanted) {
+void require_no_still_plants(const SimulationState& state, const Scenario& wanted, const std::string& what) {
   if (state.plants || !wanted.get<VegetationParameters>().enabled || !state.terrain.has(Layer::vegetation))
     return;
   const std::vector<float> still = state.terrain.values(Layer::vegetation);
   const auto cells = std::count_if(still.begin(), still.end(), [](float density) { return density > 0; });
   if (cells > 0)
-    throw ConfigError("set_parameters: vegetation.enabled: still plants are on " + std::to_string(cells) +
+    throw ConfigError(what + ": vegetation.enabled: still plants are on " + std::to_string(cells) +
                       " cells (allowed: none; edit_terrain can set the layer vegetation to 0)");
 }
 
@@ -99,17 +104,23 @@ void require_carried(const command::EditTerrain& edit, const Scenario& scenario)
 
 }  // namespace
 
+void Commands::require_scenario(const Scenario& wanted, const std::string& what) const {
+  process_table().require_runnable(wanted);
+  require_sea(wanted, state_.terrain.scale(), what);
+  require_no_still_plants(state_, wanted, what);
+  require_more_memory(state_, wanted);
+}
+
 CommandResult Commands::Execution::operator()(const command::SetParameters& command) const {
+  check_stroke_name(command.stroke, command.name);
   if (!(command.ramp >= 0 && command.ramp <= command.longest_ramp))
     throw ConfigError("set_parameters: ramp: " + std::to_string(command.ramp) + " is not in [0, 1e+12] s");
   const Scenario present = state.present_scenario(), wanted = with_live_settings(present, command.settings);
   // Also what comes at the end of a ramp is refused now, not in the middle of the run:
-  process_table().require_runnable(wanted);
-  require_sea(wanted, state.terrain.scale(), "set_parameters");
-  require_no_still_plants(state, wanted);
-  require_more_memory(state, wanted);
+  commands.require_scenario(wanted, command.name);
   std::vector<std::string> settings = command.settings;
   const std::vector<Ramp> before = state.ramps;
+  const EditHistory::Settings settings_before = history.settings(SettingScope::all);
   commands.begin_ramps(settings, command.ramp);
   try {
     commands.set_parameters(settings);
@@ -117,51 +128,34 @@ CommandResult Commands::Execution::operator()(const command::SetParameters& comm
     state.ramps = before;
     throw;
   }
+  history.paint(command.stroke, settings_before);
   return {};
 }
 
 void Commands::set_parameters(const std::vector<std::string>& settings) {
   if (settings.empty()) return;
-  const Scenario before = state_.scenario, present = state_.present_scenario(),
-                 changed = with_live_settings(present, settings);
-  process_table().require_runnable(changed);
-  require_sea(changed, state_.terrain.scale(), "set_parameters");
-  require_no_still_plants(state_, changed);
-  require_more_memory(state_, changed);
+  const Scenario changed = with_live_settings(state_.present_scenario(), settings);
+  require_scenario(changed, "set_parameters");
   std::optional<std::vector<std::optional<Command>>> new_timeline;
   if (replaces_timeline(settings)) {
     require_future_timeline(state_, changed);
     new_timeline = read_timed_commands(changed);
   }
-  state_.exec().synchronise();  // memory that steps in flight work with is given back
-  const bool had_plants = static_cast<bool>(state_.plants), new_species = !same_species(before, changed);
-  const ClockOrigin clock_before = state_.clock_origin;
-  const bool held_were_known = state_.held_layers_known;
-  state_.keep_time(changed.run, pipeline_.parts());
-  state_.scenario = changed;
-  try {
-    if (!had_plants || new_species) state_.take_species();
-    pipeline_.prepare();
-  } catch (...) {
-    state_.scenario = before;
-    if (!had_plants) state_.plants = {};
-    if (had_plants && new_species) state_.take_species();
-    state_.clock_origin = clock_before;
-    state_.held_layers_known = held_were_known;
-    pipeline_.prepare();
-    throw;
-  }
+  take_scenario(state_, pipeline_, changed);
   if (new_timeline) timed_commands_ = std::move(*new_timeline);
   state_.wind_regime = state_.wind_regime.with(changed.wind_regime, state_.time());
 }
 
 CommandResult Commands::Execution::operator()(const command::SetWind& command) const {
   check_ranges(command, "set_wind");
+  check_stroke_name(command.stroke, command.name);
+  const EditHistory::Settings before = history.settings(SettingScope::wind);
   WindRegime regime;
   regime.direction_deg = command.direction_deg;
   regime.speed = command.speed;
   regime.ramp = command.ramp;
   state.set_wind_regime(regime);
+  history.paint(command.stroke, before);
   return {};
 }
 
@@ -177,8 +171,11 @@ void check_wind_schedule(const WindRegime& r, const std::string& what) {
 }
 
 CommandResult Commands::Execution::operator()(const command::SetWindSchedule& command) const {
-  check_wind_schedule(command.regime, "set_wind_schedule");
+  check_wind_schedule(command.regime, command.name);
+  check_stroke_name(command.stroke, command.name);
+  const EditHistory::Settings before = history.settings(SettingScope::wind);
   state.set_wind_regime(command.regime);
+  history.paint(command.stroke, before);
   return {};
 }
 
@@ -225,8 +222,10 @@ std::vector<WindFeature> edited_features(const command::EditWind& command,
 }  // namespace
 
 CommandResult Commands::Execution::operator()(const command::EditWind& command) const {
+  check_stroke_name(command.stroke, command.name);
   std::vector<WindFeature>& features = state.scenario.wind_features;
   std::vector<WindFeature> before = edited_features(command, features);
+  const EditHistory::Settings settings_before = history.settings(SettingScope::features);
   std::swap(before, features);
   try {
     pipeline.adapt();  // features need memory
@@ -234,6 +233,7 @@ CommandResult Commands::Execution::operator()(const command::EditWind& command) 
     features = before;
     throw;
   }
+  history.paint(command.stroke, settings_before);
   return {};
 }
 

@@ -41,6 +41,8 @@ class Commands {
 
  private:
   struct Execution;  ///< what each command does
+  /// Throws ConfigError, in the name of `what`, if the simulation could not go on with this scenario.
+  void require_scenario(const Scenario& wanted, const std::string& what) const;
   void set_parameters(const std::vector<std::string>& settings);
   std::vector<std::string> set_what_can_be_set(std::vector<std::string> due);
   void apply_timed(const Command& command);

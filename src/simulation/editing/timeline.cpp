@@ -36,7 +36,11 @@ std::string name_of(const Command& command) {
 Commands::Commands(SimulationState& state, Pipeline& pipeline)
     : state_(state),
       pipeline_(pipeline),
-      history_(state, pipeline),
+      history_(state, pipeline,
+               [this](const Scenario& wanted, const std::string& what) {
+                 require_scenario(wanted, what);
+                 read_timed_commands(wanted);  // none is for a species that would go
+               }),
       timed_commands_(read_timed_commands(state.scenario)) {}
 
 void Commands::begin_ramps(std::vector<std::string>& settings, double duration) {
@@ -46,6 +50,7 @@ void Commands::begin_ramps(std::vector<std::string>& settings, double duration) 
                        state_.ramps.end());
   for (Ramp& ramp : extract_ramps(state_.present_scenario(), settings, state_.time(), duration))
     state_.ramps.push_back(std::move(ramp));
+  sort_by_path(state_.ramps);
 }
 
 /// Ramps and entries that were accepted one by one can meet a condition between parameters on their way. A

@@ -304,6 +304,12 @@ std::map<std::string, std::string> Pipeline::warnings() const {
   return all;
 }
 
+bool Pipeline::writes(Layer layer) const {
+  return std::any_of(stages_.begin(), stages_.end(), [layer](const Stage& stage) {
+    return std::count(stage.process->writes.begin(), stage.process->writes.end(), layer) > 0;
+  });
+}
+
 void Pipeline::edited(Layer layer) {
   for (const Process& process : table_.processes)
     if (process.edited) process.edited(state_, layer);

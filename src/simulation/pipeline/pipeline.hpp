@@ -34,6 +34,8 @@ class Pipeline {
   void ground_changed() { fields_.heights_stale = true; }
   /// An edit, or its undo, changes this layer; see Process::edited.
   void edited(Layer layer);
+  /// Whether an active process writes the layer.
+  bool writes(Layer layer) const;
   /// Derived layers are not those of the state any more.
   void derived_changed() { derived_ready_ = false; }
 

@@ -163,7 +163,10 @@ void slide_ground(E& e, StepContext& c, AvalancheWork& work) {
     avalanching::step_bedrock(e, c.terrain, p, repose, state.ledger(), given, work.ground);
     if (is_set(bedrock_loose)) set(state.flags, bedrock_loose, moved());
   }
-  if (is_set(bedrock_loose) && has_soil) state.flags.insert(soil_loose);
+  if (!has_soil)
+    state.flags.erase(soil_loose);
+  else if (is_set(bedrock_loose))
+    state.flags.insert(soil_loose);
 }
 
 void slide(StepContext& c, ProcessWorkspace* workspace) {
@@ -322,8 +325,8 @@ Process avalanching_process() {
   p.flags = {bedrock_loose, soil_loose};
   p.edited = [](SimulationState& state, Layer layer) {
     if (layer == Layer::bedrock) state.flags.insert(bedrock_loose);
-    if (layer == Layer::soil || (layer == Layer::bedrock && state.terrain.has(Layer::soil)))
-      state.flags.insert(soil_loose);
+    // Of bedrock, too: soil may come into use before the next step.
+    if (layer == Layer::bedrock || layer == Layer::soil) state.flags.insert(soil_loose);
   };
   p.counter = avalanche_iterations;
   p.counted = [](const ProcessWorkspace& workspace) {

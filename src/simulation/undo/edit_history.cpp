@@ -1,13 +1,10 @@
 #include "src/simulation/undo/edit_history.hpp"
 
 #include <algorithm>
-#include <optional>
 
 #include "src/core/error.hpp"
-#include "src/core/quoted.hpp"
-#include "src/simulation/undo/changed_cells.hpp"
-#include "src/simulation/undo/material_return.hpp"
 #include "src/simulation/undo/painted_layers.hpp"
+#include "src/simulation/undo/painted_settings.hpp"
 
 namespace desert_sim {
 
@@ -20,8 +17,12 @@ void check_stroke_name(const std::string& name, const std::string& what) {
     throw ConfigError(what + ": stroke: has a byte that is not a printable character of ASCII");
 }
 
-EditHistory::EditHistory(SimulationState& state, Pipeline& pipeline)
-    : state_(state), pipeline_(pipeline), loose_(state, pipeline), population_(state, pipeline) {}
+EditHistory::EditHistory(SimulationState& state, Pipeline& pipeline, ScenarioCheck check)
+    : state_(state),
+      pipeline_(pipeline),
+      check_(std::move(check)),
+      loose_(state, pipeline),
+      population_(state, pipeline) {}
 
 // ---- memory
 
@@ -42,6 +43,12 @@ void EditHistory::keep_to_memory() {
     strokes_.pop_front();
   }
   if (strokes_.empty()) population_.forget();
+}
+
+/// Plants that are painted from now on may be of other species than those of the present strokes.
+void EditHistory::close_plant_strokes() {
+  for (const Stroke& stroke : strokes_)
+    if (!stroke.species.empty()) close(stroke);
 }
 
 /// Further edits of its name begin another stroke.
@@ -89,136 +96,31 @@ void EditHistory::paint(const std::string& name, const Population::Edit& plants)
   const std::size_t before = stroke.bytes();
   stroke.last_action = ++actions_;
   population_.merge(stroke.plants, std::move(change));
+  if (stroke.species.empty())
+    for (const Species& species : state_.scenario.species) stroke.species.push_back(species.name);
   recount(stroke, before);
   keep_to_memory();
 }
 
-// ---- undo and redo
-
-Stroke& EditHistory::find(const std::string& name, bool undone, const std::string& what) {
-  check_stroke_name(name, what);
-  Stroke *found = nullptr, *newest = nullptr;
-  for (Stroke& stroke : strokes_) {
-    if (stroke.undone != undone) continue;
-    if (!newest || stroke.last_action > newest->last_action) newest = &stroke;
-    const bool named = name.empty() || stroke.name == name;
-    if (named && (!found || stroke.last_action > found->last_action)) found = &stroke;
-  }
-  if (found) return *found;
-  const std::string verb = undone ? "redone" : "undone";
-  if (!remembers()) throw ConfigError(what + ": no stroke is kept, because undo_memory is 0");
-  if (!newest)
-    throw ConfigError(what + ": there is no stroke that can be " + verb +
-                      " (a load and a reset forget all strokes)");
-  throw ConfigError(what + ": stroke: " + desert_sim::in_quotes(name) +
-                    " is not the name of a stroke that can be " + verb +
-                    (newest->name.empty() ? " (the newest has no name)"
-                                          : " (the newest is " + desert_sim::in_quotes(newest->name) + ")"));
+EditHistory::Settings EditHistory::settings(SettingScope scope) const {
+  if (!remembers() || !settings_remembered_) return {scope, {}, {}};
+  return {scope, settings_of(state_, scope), state_.layers_in_use()};
 }
 
-CommandResult EditHistory::undo(const std::string& name, bool with_change) {
-  return turn(find(name, false, "undo"), with_change);
-}
-
-CommandResult EditHistory::redo(const std::string& name, bool with_change) {
-  return turn(find(name, true, "redo"), with_change);
-}
-
-namespace {
-
-std::vector<int> cells_of(const PaintedLayer& painted) {
-  std::vector<int> cells;
-  cells.reserve(painted.cells.size());
-  for (const PaintedCell& c : painted.cells) cells.push_back(c.cell);
-  return cells;
-}
-
-}  // namespace
-
-/// Brings the memory into use that the stroke needs. Throws ConfigError, and has changed nothing, if there is
-/// none.
-void EditHistory::prepare(const Stroke& stroke) {
-  loose_.begin();
-  for (const PaintedLayer& painted : stroke.painted) {
-    if (state_.terrain.has(painted.layer)) continue;
-    state_.terrain.allocate(painted.layer);
-    new_layers_.insert(painted.layer);
-  }
-  const ProcessFlags flags = state_.flags;
-  for (Layer layer : {Layer::bedrock, Layer::soil})
-    if (stroke.changed(layer)) pipeline_.edited(layer);
-  try {
-    pipeline_.adapt();  // ground that is loose needs memory
-  } catch (...) {
-    state_.flags = flags;
-    release_layers();
-    throw;
-  }
-  state_.flags = flags;
-}
-
-/// A terrain that did not have a painted layer before its strokes does not have it when all are undone.
-void EditHistory::release_layers() {
-  for (auto layer = new_layers_.begin(); layer != new_layers_.end();) {
-    if (std::any_of(strokes_.begin(), strokes_.end(),
-                    [&](const Stroke& s) { return !s.undone && s.changed(*layer); })) {
-      ++layer;
-      continue;
-    }
-    state_.exec().synchronise();  // steps in flight work with it
-    state_.terrain.set_allocated(*layer, false);
-    layer = new_layers_.erase(layer);
-  }
-}
-
-CommandResult EditHistory::turn(Stroke& stroke, bool with_change) {
-  // Whatever needs memory comes first, so that nothing is half done if there is none.
-  prepare(stroke);
-  const std::size_t before = stroke.bytes();
-  std::optional<MaterialTurn> materials;
-  std::vector<CellList> painted;
-  CommandResult result;
-  try {
-    materials.emplace(stroke.materials, state_);
-    for (const PaintedLayer& layer : stroke.painted) painted.emplace_back(state_.exec(), cells_of(layer));
-    result.returned.missing_plants = population_.turn_back(stroke.plants);
-  } catch (...) {
-    release_layers();
-    throw;
-  }
-  pipeline_.ground_changed();
-  const MaterialReturns moved = materials->commit();
-  ChangedCells cells(state_);
-  for (const MaterialChange& change : stroke.materials) cells.add(change);
-  for (std::size_t n = 0; n < painted.size(); ++n)
-    cells.add(stroke.painted[n],
-              desert_sim::turn(strokes_, stroke, stroke.painted[n], painted[n], state_.terrain));
-  cells.add(stroke.plants);
-  result.plants = static_cast<long long>(stroke.plants.added.size()) -
-                  static_cast<long long>(stroke.plants.removed.size());
-  bool complete = true;
-  for (const MaterialChange& change : stroke.materials) {
-    const auto m = static_cast<std::size_t>(material_of(change.layer));
-    const double cell = state_.scenario.grid.cell_size,
-                 quantum = state_.terrain.scale().quantum() * cell * cell;
-    const auto volume = [&](long long quanta) { return static_cast<double>(quanta) * quantum; };
-    result.returned.materials[m] = {volume(moved[m].added), volume(moved[m].removed),
-                                    volume(moved[m].missing)};
-    complete = complete && moved[m].missing == 0;
-  }
-  loose_.returned(stroke, complete, stroke.loose);
-  stroke.undone = !stroke.undone;
+void EditHistory::paint(const std::string& name, const Settings& before) {
+  if (!remembers() || !settings_remembered_) return;
+  std::vector<ChangedSetting> changed = changed_settings(before.texts, settings_of(state_, before.scope));
+  if (changed.empty()) return;
+  Stroke& stroke = stroke_to_paint(name);
+  const std::size_t bytes = stroke.bytes();
   stroke.last_action = ++actions_;
-  result.returned.name = stroke.name;
-  result.changed_cells = cells.rectangle();
-  if (with_change) result.changes = cells.changes();
-  close(stroke);
-  release_layers();
-  recount(stroke, before);
+  desert_sim::paint(strokes_, stroke, std::move(changed), actions_);
+  for (Layer layer : state_.layers_in_use())
+    if (info(layer).lifetime == Lifetime::persistent &&
+        std::count(before.layers.begin(), before.layers.end(), layer) == 0)
+      stroke.new_layers.push_back(layer);
+  recount(stroke, bytes);
   keep_to_memory();
-  result.undoable = undoable();
-  result.redoable = redoable();
-  return result;
 }
 
 int EditHistory::redoable() const {

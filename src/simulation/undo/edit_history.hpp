@@ -1,6 +1,6 @@
 #pragma once
-/// The history of edits: what undo and redo bring back. doc/robotics/undo.md says what they mean in a
-/// world that moves. It belongs to a simulation and ends with it; checkpoints do not have it.
+/// The history of edits and settings: what undo and redo bring back. doc/robotics/undo.md says what they mean
+/// in a world that moves. It belongs to a simulation and ends with it; checkpoints do not have it.
 
 #include <deque>
 #include <set>
@@ -10,7 +10,9 @@
 
 #include "src/simulation/commands/command.hpp"
 #include "src/simulation/undo/loose_ground.hpp"
+#include "src/simulation/undo/material_return.hpp"
 #include "src/simulation/undo/population.hpp"
+#include "src/simulation/undo/settings.hpp"
 #include "src/simulation/undo/stroke.hpp"
 
 namespace desert_sim {
@@ -24,13 +26,16 @@ void check_stroke_name(const std::string& name, const std::string& what);
 
 class EditHistory {
  public:
-  EditHistory(SimulationState& state, Pipeline& pipeline);
+  /// `check`: of a scenario that an undo or redo would bring back.
+  EditHistory(SimulationState& state, Pipeline& pipeline, ScenarioCheck check);
   EditHistory(const EditHistory&) = delete;
   EditHistory& operator=(const EditHistory&) = delete;
 
   /// What strokes may take [bytes]; the oldest are forgotten first. 0: none is kept.
   void set_memory(std::size_t bytes);
   bool remembers() const { return memory_ > 0; }
+  /// Whether settings are remembered, too, as they are unless somebody says otherwise.
+  void remember_settings(bool on) { settings_remembered_ = on; }
   std::size_t bytes() const;
   /// How many strokes can be undone, and redone, now.
   int undoable() const { return static_cast<int>(strokes_.size()) - redoable(); }
@@ -45,6 +50,16 @@ class EditHistory {
   void paint(const std::string& stroke, const LayerEdit& edit, bool new_layer);
   void paint(const std::string& stroke, const Population::Edit& plants);
 
+  /// Before a command sets something: what could change.
+  struct Settings {
+    SettingScope scope;
+    SettingTexts texts;         ///< none if nothing is remembered
+    std::vector<Layer> layers;  ///< in use
+  };
+  Settings settings(SettingScope scope) const;
+  /// After it has. A command that changes no setting is no stroke.
+  void paint(const std::string& stroke, const Settings& before);
+
   /// Of the stroke of that name, or, if it is empty, of the one that was painted or redone (undone) last.
   /// Throws ConfigError if there is none. `with_change`: the result tells what changed, cell by cell.
   CommandResult undo(const std::string& stroke, bool with_change);
@@ -55,8 +70,13 @@ class EditHistory {
   CommandResult turn(Stroke& stroke, bool with_change);
   Stroke& stroke_to_paint(const std::string& name);
   void prepare(const Stroke& stroke);
+  void require_species(const Stroke& stroke) const;
+  bool is_used(Layer layer) const;
+  bool tell(const Stroke& stroke, const MaterialReturns& moved, CommandResult& result) const;
   void release_layers();
+  void release_layers_of_settings(const Stroke& stroke);
   void close(const Stroke& stroke);
+  void close_plant_strokes();
   void forget_oldest();
   void keep_to_memory();
   /// The sizes of strokes are counted again after each change.
@@ -64,6 +84,8 @@ class EditHistory {
 
   SimulationState& state_;
   Pipeline& pipeline_;
+  const ScenarioCheck check_;
+  bool settings_remembered_ = true;
   LooseGround loose_;
   Population population_;
   std::deque<Stroke> strokes_;                     ///< the oldest first

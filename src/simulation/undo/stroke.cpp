@@ -87,6 +87,11 @@ std::size_t Stroke::bytes() const {
   for (const MaterialChange& change : materials)
     total += sizeof(MaterialChange) + change.cells.size() * sizeof(CellAmount);
   for (const PaintedLayer& layer : painted) total += layer.cells.size() * sizeof(PaintedCell);
+  for (const ChangedSetting& setting : settings)
+    total += sizeof(ChangedSetting) + setting.key.size() + (setting.before ? setting.before->size() : 0) +
+             (setting.after ? setting.after->size() : 0);
+  for (const std::string& kind : species) total += sizeof(std::string) + kind.size();
+  total += new_layers.size() * sizeof(Layer);
   total += (plants.added.size() + plants.removed.size() + plants.passed.size()) * sizeof(ChangedPlant);
   return total;
 }

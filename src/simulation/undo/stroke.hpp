@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -73,6 +74,14 @@ struct LooseMark {
   bool older = false;                    ///< it also changed ground before that epoch
 };
 
+/// A setting (see settings.hpp) that a command has changed; none: it is not there. `before` and `order` as in
+/// PaintedCell.
+struct ChangedSetting {
+  std::string key;
+  std::optional<std::string> before, after;
+  std::uint64_t order = 0;
+};
+
 struct Stroke {
   std::string name;  ///< empty: one call
   bool undone = false;
@@ -80,7 +89,10 @@ struct Stroke {
   std::vector<MaterialChange> materials;
   std::vector<PaintedLayer> painted;
   PlantChange plants;
+  std::vector<std::string> species;  ///< of the scenario when plants were painted, which they refer to
   LooseMark loose;
+  std::vector<ChangedSetting> settings;
+  std::vector<Layer> new_layers;  ///< that settings have brought into use
 
   /// Adds what an edit changed in a layer of material.
   void add(Layer layer, const std::vector<CellAmount>& cells, bool conserve);

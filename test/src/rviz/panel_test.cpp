@@ -1,6 +1,7 @@
 // The panel desert_sim/Panel on a screen of Xvfb, with a node of its own: what is clicked and typed reaches
 // the node, and what the node refuses, or that it has gone, is shown.
 
+#include <desert_sim/ApplySettings.h>
 #include <desert_sim/EditTerrain.h>
 #include <desert_sim/PlannerStatus.h>
 #include <desert_sim/RoverStatus.h>
@@ -302,6 +303,37 @@ TEST_F(Panel, UndoesAndRedoes) {
   ASSERT_TRUE(window_->run_until([&] { return button("redo") == "Redo (1)"; })) << button("redo");
   window_->click("redo");
   EXPECT_TRUE(node_has([&](const SimulationStatus& s) { return s.state_hash != before && s.undoable == 1; }));
+}
+
+TEST_F(Panel, UndoesTheWindASettingAndAReset) {
+  const auto undo_reaches = [&](const char* count) {
+    return window_->run_until(
+        [&] { return window_->find<QAbstractButton>("undo")->text() == QString("Undo (%1)").arg(count); });
+  };
+  const double calm = statuses_->last().wind_above.x;
+  desert_sim::SetWind::Request wind;
+  wind.speed = 11;
+  node_->call<desert_sim::SetWind>("set_wind", wind);
+  ASSERT_TRUE(undo_reaches("1"));
+  desert_sim::ApplySettings::Request settings;
+  settings.settings = {"saltation.lift=0.125"};
+  node_->call<desert_sim::ApplySettings>("apply_settings", settings);
+  ASSERT_TRUE(undo_reaches("2"));
+  window_->click("undo");
+  EXPECT_TRUE(window_->shows("undo_error", "set back: saltation.lift")) << window_->text("undo_error");
+  ASSERT_TRUE(undo_reaches("1"));
+  EXPECT_TRUE(node_has([](const SimulationStatus& s) { return s.wind_above.x == 11; }));
+  window_->click("undo");
+  EXPECT_TRUE(node_has([&](const SimulationStatus& s) { return s.wind_above.x == calm; }));
+  window_->click("redo");
+  ASSERT_TRUE(undo_reaches("1"));
+  window_->click("reset");
+  EXPECT_TRUE(node_has([&](const SimulationStatus& s) { return s.wind_above.x == calm; }));
+  ASSERT_TRUE(undo_reaches("1"));
+  window_->click("undo");
+  EXPECT_TRUE(node_has([](const SimulationStatus& s) { return s.wind_above.x == 11; }));
+  EXPECT_TRUE(window_->shows("undo_error", "the terrain is the one of before"))
+      << window_->text("undo_error");
 }
 
 TEST_F(Panel, ShowsThatTheNodeHasVanishedAndIsBack) {

@@ -1,9 +1,15 @@
 /// ~undo and ~redo on a paused node with the scenario corner.yaml (64 × 48 cells of 2 m, corner at (10, −20),
 /// half a metre of sand, open edges).
+#include <desert_sim/ApplySettings.h>
 #include <desert_sim/EditTerrain.h>
+#include <desert_sim/EditWind.h>
 #include <desert_sim/ElevationGrid.h>
 #include <desert_sim/ElevationUpdate.h>
+#include <desert_sim/GetScenario.h>
 #include <desert_sim/GetSubmap.h>
+#include <desert_sim/SetWeather.h>
+#include <desert_sim/SetWind.h>
+#include <desert_sim/SetWindSchedule.h>
 #include <desert_sim/SimulationStatus.h>
 #include <desert_sim/TerrainDiff.h>
 #include <desert_sim/Undo.h>
@@ -17,7 +23,25 @@ namespace {
 
 using namespace desert_sim;
 using namespace node_test;
-using UndoServices = Services;
+
+/// The reset of SetUp() can be undone, if there was something to reset.
+class UndoServices : public Services {
+ protected:
+  void SetUp() override {
+    Services::SetUp();
+    EXPECT_TRUE(wait_until([&] { return statuses_.last().redoable == 0; })) << "a reset";
+    before_ = statuses_.last().undoable;
+  }
+  bool status_has(std::uint32_t undoable, std::uint32_t redoable) {
+    return wait_until([&] {
+      const SimulationStatus status = statuses_.last();
+      return status.undoable == before_ + undoable && status.redoable == redoable;
+    });
+  }
+
+  Listener<SimulationStatus> statuses_{"status"};
+  std::uint32_t before_ = 0;
+};
 
 EditTerrain::Request brush(double x, double y, const std::string& stroke, const std::string& layer = "sand") {
   EditTerrain::Request request;
@@ -49,13 +73,6 @@ Undo::Response turn(const std::string& service, const std::string& stroke = "") 
 
 TEST_F(UndoServices, AStrokeComesBackWithItsVolumeAndItsCells) {
   const std::string before = hash();
-  Listener<SimulationStatus> statuses("status");
-  const auto status_has = [&](std::uint32_t undoable, std::uint32_t redoable) {
-    return wait_until([&] {
-      const SimulationStatus status = statuses.last();
-      return status.undoable == undoable && status.redoable == redoable;
-    });
-  };
   const auto first = edit(brush(50, 30, "a"));
   edit(brush(90, 30, "b"));
   const auto second = edit(brush(58, 30, "a"));
@@ -69,14 +86,14 @@ TEST_F(UndoServices, AStrokeComesBackWithItsVolumeAndItsCells) {
   EXPECT_EQ(undone.materials[0].missing, 0);
   EXPECT_GE(undone.x, first.x);
   EXPECT_LE(undone.x + undone.width, second.x + second.width);
-  EXPECT_EQ(undone.undoable, 1u);
+  EXPECT_EQ(undone.undoable, before_ + 1);
   EXPECT_EQ(undone.redoable, 1u);
   EXPECT_TRUE(status_has(1, 1));
   EXPECT_EQ(turn("redo").stroke, "a");
   EXPECT_TRUE(status_has(2, 0));
   EXPECT_EQ(hash(), painted);
   turn("undo");
-  EXPECT_EQ(turn("undo").undoable, 0u);
+  EXPECT_EQ(turn("undo").undoable, before_);
   EXPECT_EQ(hash(), before);
 }
 
@@ -108,16 +125,77 @@ TEST_F(UndoServices, ObstaclesArePaintedAndTakenAway) {
 }
 
 TEST_F(UndoServices, WhatIsNotThereIsRefused) {
-  expect_refused<Undo>("undo", {}, "no stroke", "undone");
-  expect_refused<Undo>("redo", {}, "no stroke", "redone");
-  edit(brush(50, 30, "a"));
   Undo::Request other;
   other.stroke = "b";
+  expect_refused<Undo>("undo", other, "no stroke", "undone");
+  expect_refused<Undo>("redo", {}, "no stroke", "redone");
+  edit(brush(50, 30, "a"));
   expect_refused<Undo>("undo", other, "'b'", "'a'");
   auto wrong = brush(50, 30, std::string(300, 'x'));
   expect_refused<EditTerrain>("edit_terrain", wrong, "300 bytes", "255");
+}
+
+/// Settings, wind and features are strokes, too; a reset is what undo takes back where no stroke is left.
+TEST_F(UndoServices, SettingsWindAndResetsComeBack) {
+  const auto yaml = [] { return call<GetScenario>("get_scenario", GetScenario::Request()).yaml; };
+  const std::string before = yaml(), state = hash();
+  std::vector<std::string> texts{before};
+  const auto keep = [&] { texts.push_back(yaml()); };
+  SetWind::Request wind;
+  wind.speed = 9;
+  wind.direction_deg = 90;
+  wind.stroke = "wind";
+  ASSERT_TRUE(call<SetWind>("set_wind", wind).success);
+  wind.speed = 8;
+  ASSERT_TRUE(call<SetWind>("set_wind", wind).success);
+  keep();
+  EditWind::Request vortex;
+  vortex.operation = "add";
+  vortex.kind = "vortex";
+  vortex.id = 3;
+  vortex.center.x = 50;
+  vortex.radius = 10;
+  vortex.speed = 3;
+  ASSERT_TRUE(call<EditWind>("edit_wind", vortex).success);
+  keep();
+  ApplySettings::Request settings;
+  settings.settings = {"saltation.lift=0.25", "run.timeline=[{time: 1000, set: {saltation.lift: 1}}]"};
+  ASSERT_TRUE(call<ApplySettings>("apply_settings", settings).success);
+  keep();
+  SetWeather::Request rain;
+  rain.change = {"rain_rate"};
+  rain.rain_rate = 1e-5;
+  ASSERT_TRUE(call<SetWeather>("set_weather", rain).success);
+  keep();
+  SetWindSchedule::Request rose;
+  rose.kind = "rose";
+  rose.hold_time = 10;
+  rose.segments.resize(2);
+  for (auto& segment : rose.segments) segment.speed = segment.probability = 1;
+  ASSERT_TRUE(call<SetWindSchedule>("set_wind_schedule", rose).success);
+  keep();
+  edit(brush(50, 30, ""));
+  EXPECT_TRUE(status_has(6, 0)) << statuses_.last().undoable;
+  turn("undo");
+  for (std::size_t n = texts.size() - 1; n-- > 0;) {
+    const Undo::Response r = turn("undo", n == 0 ? "wind" : "");
+    EXPECT_FALSE(r.settings.empty());
+    EXPECT_EQ(yaml(), texts[n]) << n;
+  }
+  EXPECT_EQ(hash(), state);
+  for (std::size_t n = 1; n < texts.size(); ++n) {
+    turn("redo");
+    EXPECT_EQ(yaml(), texts[n]) << n;
+  }
   ASSERT_TRUE(call<std_srvs::Trigger>("reset").success);
-  expect_refused<Undo>("undo", {}, "no stroke", "undone");
+  EXPECT_TRUE(status_has(1, 0)) << "the reset alone";
+  EXPECT_EQ(yaml(), before);
+  EXPECT_TRUE(turn("undo").terrain_replaced);
+  EXPECT_EQ(yaml(), texts.back());
+  EXPECT_TRUE(turn("redo").terrain_replaced);
+  EXPECT_EQ(yaml(), before);
+  wind.stroke = std::string(300, 'x');
+  expect_refused<SetWind>("set_wind", wind, "300 bytes", "255");
 }
 
 TEST_F(UndoServices, IsToldToWhoeverListens) {
@@ -208,13 +286,17 @@ TEST_F(UndoServices, AThousandStrokesOfTwoOperatorsAreUndone) {
     }
   });
   EXPECT_NE(hash(), before);
+  // What is left beneath these strokes is the reset of SetUp().
+  std::atomic<int> left{static_cast<int>(turn("undo").undoable - before_)};
+  const int all = left;
   both([&](Operator& who) {
-    while (who.undo()) ++undone;
+    while (left-- > 0) undone += who.undo();
   });
-  EXPECT_GE(undone, 2 * strokes);
+  EXPECT_GE(undone + 1, 2 * strokes);
   EXPECT_EQ(failed, 0);
   EXPECT_FALSE(first.missed_something() || second.missed_something());
-  expect_refused<Undo>("undo", {}, "no stroke", "undone");
+  EXPECT_EQ(undone, all);
+  EXPECT_TRUE(status_has(0, static_cast<std::uint32_t>(all + 1))) << statuses_.last().undoable;
   EXPECT_EQ(hash(), before);
 }
 

@@ -249,7 +249,8 @@ TEST_P(UndoIn, WhatIsNotThereIsRefused) {
     s->apply(edit);
     s->save_checkpoint(folder_.path("c"));
     s->apply(command);
-    expect(command::Undo{}, "no stroke that can be undone (a load and a reset forget all strokes)");
+    expect(command::Undo{edit.stroke},
+           "no stroke that can be undone (a load and a reset forget all strokes)");
     expect(command::Redo{}, "no stroke that can be redone (a load and a reset forget all strokes)");
   }
   auto none = session("dunes", "", 0);
