@@ -72,7 +72,7 @@ if(DESERT_WITH_ROS)
   desert_library(desert_grid_map FOLDERS src/grid_map LINK PUBLIC desert_io) # for desert_run too: no roscpp
   desert_use_ros(desert_grid_map ${rosbag_storage_LIBRARIES} ${roscpp_serialization_LIBRARIES})
   desert_library(desert_ros FOLDERS src/ros EXCLUDE "/(desert_(sim|rover|planner)_(node|nodelet)|nav_core_plugin)\\.cpp$"
-    LINK PUBLIC desert_command_line desert_grid_map desert_planner desert_rover desert_client)
+    LINK PUBLIC desert_command_line desert_export desert_grid_map desert_planner desert_rover desert_client)
   if(TARGET desert_ros)
     desert_use_ros(desert_ros)
     # GCC 12 takes empty functions of Boost, which clients of actions copy, for uninitialised ones.

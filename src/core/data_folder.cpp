@@ -97,6 +97,8 @@ bool DataFolder::has_folder(const std::string& name) const {
   return false;
 }
 
+void DataFolder::require_name(const std::string& name) { checked_path(name); }
+
 WritableFile DataFolder::for_writing(const std::string& name) const {
   const fs::path relative = checked_path(name);
   try {

@@ -55,6 +55,8 @@ class DataFolder {
   bool has_file(const std::string& name) const;
   /// Whether it has a folder of this name; false also where for_reading() would refuse the name.
   bool has_folder(const std::string& name) const;
+  /// Throws ConfigError for names that for_writing() refuses whatever there is in the folder.
+  static void require_name(const std::string& name);
   /// Also creates the folders that are missing.
   WritableFile for_writing(const std::string& name) const;
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "src/core/did_you_mean.hpp"
 #include "src/core/error.hpp"
 #include "src/core/files.hpp"
 #include "src/core/joined.hpp"
@@ -51,10 +52,11 @@ const ExportFormat& export_format(const std::string& path) {
   const auto found = std::find_if(export_formats().begin(), export_formats().end(),
                                   [&](const ExportFormat& format) { return ending == format.ending; });
   if (found != export_formats().end()) return *found;
+  const std::string known =
+      joined(export_formats(), [](const ExportFormat& format) { return std::string(format.ending); });
   throw ConfigError(path + ": " +
                     (ending.empty() ? "has no ending" : in_quotes(ending) + " is not an ending") +
-                    " that this build exports (allowed: " +
-                    joined(export_formats(), [](const ExportFormat& format) { return format.ending; }) + ")");
+                    " that this build exports (allowed: " + known + ")" + did_you_mean(ending, known));
 }
 
 std::vector<std::string> exported_files(const std::string& path) {

@@ -26,9 +26,11 @@ render::Colour unpacked(render::PackedColour packed) {
 
 }  // namespace
 
+std::vector<Layer> layers_to_export() { return layers_of(look_of_export()); }
+
 ExportedTerrain terrain_to_export(Simulation& simulation) {
   ExportedTerrain terrain;
-  terrain.snapshot = simulation.views().snapshot(layers_of(look_of_export()));
+  terrain.snapshot = simulation.views().snapshot(layers_to_export());
   terrain.plants = simulation.views().begin_plants().get();
   return terrain;
 }

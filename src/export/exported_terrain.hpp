@@ -15,6 +15,9 @@ struct ExportedTerrain {
   std::shared_ptr<const PlantList> plants;   ///< null: none
 };
 
+/// What its snapshot has, as far as the terrain does.
+std::vector<Layer> layers_to_export();
+
 /// The present state of a simulation.
 ExportedTerrain terrain_to_export(Simulation& simulation);
 

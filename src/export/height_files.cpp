@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
 
@@ -62,8 +63,8 @@ void write_height_png(const std::string& path, const ExportedTerrain& terrain) {
                 number_text(lowest + relief, 9) + " m; pixels are " + number_text(s.cell_size, 9) +
                 " m apart, and the middle is at " + point_text(square.middle_x(), square.middle_y()));
   if (step > coarse_step)
-    log_warning(path + ": its heights are in steps of " + number_text(100 * step) +
-                " cm, 1/65535 of the relief (.exr has them as they are)");
+    log_warning(std::filesystem::path(path).filename().string() + ": its heights are in steps of " +
+                number_text(100 * step) + " cm, 1/65535 of the relief (.exr has them as they are)");
 }
 
 }  // namespace desert_sim

@@ -1,5 +1,6 @@
 /// Services for checkpoints, terrains and scenarios in files.
 
+#include <desert_sim/ExportTerrain.h>
 #include <desert_sim/LoadCheckpoint.h>
 #include <desert_sim/LoadScenario.h>
 #include <desert_sim/LoadTerrain.h>
@@ -19,6 +20,7 @@
 #include "src/core/joined.hpp"
 #include "src/core/number_text.hpp"
 #include "src/core/quoted.hpp"
+#include "src/export/export_formats.hpp"
 #include "src/ros/services/services.hpp"
 #include "src/ros/services/terrain_formats.hpp"
 #include "src/scenario/band_terrain.hpp"
@@ -132,6 +134,26 @@ void save_terrain_folder(const ServiceContext& c, FilesLock& files, const SaveTe
            response.path.c_str());
 }
 
+void export_terrain_files(const ServiceContext& c, FilesLock& files, const ExportTerrainRequest& request,
+                          ExportTerrainResponse& response) {
+  DataFolder::require_name(request.name);
+  export_format(request.name);  // refuses other endings before there are new folders
+  const WritableFile file = c.files.for_writing(request.name);
+  const std::vector<std::string> all = exported_files(file.path());
+  const auto lock = files.lock();
+  const TerrainToExport terrain = c.simulation.terrain_to_export(all).get();
+  const Snapshot& snapshot = *terrain.state.snapshot;
+  file.write([&](const std::string& path) {
+    require_exportable(path, snapshot.width, snapshot.height, terrain.rasters);
+    export_terrain(path, {terrain.state.snapshot, terrain.state.plants});
+  });
+  response.path = file.path();
+  response.files = all;
+  response.step = terrain.state.moment.step;
+  ROS_INFO("The terrain of step %lu was exported to %s.", static_cast<unsigned long>(response.step),
+           response.path.c_str());
+}
+
 /// The name would lead to the installed scenario when it is loaded.
 void require_not_installed(const std::string& name) {
   const std::string folder = std::filesystem::path(name + "/").lexically_normal().parent_path().string();
@@ -208,6 +230,10 @@ void add_file_services(Services& services) {
                             [&c, files](const SaveTerrainRequest& request, SaveTerrainResponse& response) {
                               save_terrain_folder(c, *files, request, response);
                             });
+  services.add<ExportTerrain>(
+      "export_terrain", [&c, files](const ExportTerrainRequest& request, ExportTerrainResponse& response) {
+        export_terrain_files(c, *files, request, response);
+      });
   services.add<LoadTerrain>(
       "load_terrain", [&c, loader](const LoadTerrainRequest& request, LoadTerrainResponse& response) {
         const std::string name = is_bag(request.name) ? request.name : request.name + "/" + terrain_file;

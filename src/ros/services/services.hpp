@@ -75,8 +75,8 @@ void add_wind_services(Services& services);  ///< ~set_wind, ~set_wind_schedule,
 void add_edit_services(Services& services);  ///< ~edit_terrain, ~edit_plants, ~undo, ~redo
 void add_map_services(Services& services);   ///< ~query_terrain, ~get_submap, ~get_grid_map
 void add_run_services(Services& services);   ///< ~step, ~pause, ~resume, ~reset
-void add_file_services(
-    Services& services);  ///< ~save_*, ~load_* of checkpoints, terrains, scenarios; ~new_scenario
+/// ~save_*, ~load_* of checkpoints, terrains, scenarios; ~new_scenario, ~export_terrain
+void add_file_services(Services& services);
 void add_parameter_services(Services& services);  ///< ~apply_settings, ~get_scenario
 
 }  // namespace desert_sim

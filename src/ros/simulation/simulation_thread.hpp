@@ -85,6 +85,8 @@ class SimulationThread {
   /// For a scenario file at `path`. Refused if the journal needs the file that is there: see
   /// Session::require_not_of_journal().
   std::future<TerrainToSave> terrain_to_save(const std::string& path);
+  /// Likewise for all of these files.
+  std::future<TerrainToExport> terrain_to_export(const std::vector<std::string>& files);
   std::future<ScenarioToSave> scenario_to_save(const std::string& path);
   /// Gives back what is kept of a layer for subscribers.
   std::future<void> forget(Layer layer);

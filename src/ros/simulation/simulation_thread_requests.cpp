@@ -3,8 +3,10 @@
 #include <chrono>
 #include <cstdio>
 
+#include "src/export/exported_terrain.hpp"
 #include "src/io/terrain_files.hpp"
 #include "src/ros/simulation/simulation_thread.hpp"
+#include "src/scenario/raster_grid.hpp"
 #include "src/simulation/checkpoint.hpp"
 #include "src/simulation/memory/memory.hpp"
 
@@ -178,6 +180,23 @@ std::future<TerrainToSave> SimulationThread::terrain_to_save(const std::string& 
       [](const PendingCopy& u) {
         return TerrainToSave{u.state.get(), u.scenario, u.hash};
       });
+}
+
+std::future<TerrainToExport> SimulationThread::terrain_to_export(const std::vector<std::string>& files) {
+  struct PendingCopy {
+    PendingState state;
+    std::vector<std::string> rasters;
+  };
+  std::future<PendingCopy> begun = submit<PendingCopy>([this, files] {
+    for (const std::string& file : files) session_->require_not_of_journal(file);
+    StateQuery query;
+    query.plants = true;
+    return PendingCopy{begin_state_copy(layers_to_export(), {}, query),
+                       raster_paths(session_->simulation().state().start)};
+  });
+  return wait_for_copy<TerrainToExport>(std::move(begun), [](const PendingCopy& u) {
+    return TerrainToExport{u.state.get(), u.rasters};
+  });
 }
 
 std::future<ScenarioToSave> SimulationThread::scenario_to_save(const std::string& path) {

@@ -55,6 +55,12 @@ struct TerrainToSave {
   std::uint64_t hash = 0;
 };
 
+/// What export_terrain() and what is asked before it take: all plants, and layers_to_export().
+struct TerrainToExport {
+  TerrainState state;
+  std::vector<std::string> rasters;  ///< that the scenario is built from
+};
+
 /// What save_scenario() takes: the present scenario and its state.
 struct ScenarioToSave {
   Moment moment;

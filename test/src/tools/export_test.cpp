@@ -57,6 +57,7 @@ TEST_F(Export, OfACheckpointNeedsNoStep) {
 TEST_F(Export, RefusesWhatCannotBeWrittenBeforeTheRun) {
   refused({"--export", path("a.dae")},
           "a.dae: '.dae' is not an ending that this build exports (allowed: .ply, .stl");
+  refused({"--export", path("a.objj")}, "did you mean '.obj'?");
   refused({"--export", path("a")}, "a: has no ending");
   refused({"--export", path("none/a.ply")}, "none/a.ply: cannot be written");
   fs::create_directory(path("b_surface.png"));

@@ -119,6 +119,9 @@ class Caller:
             request.name = self.draw.choice(["none", *self.names["terrain"]])
         elif service in ("save_checkpoint", "save_scenario", "save_terrain"):
             request.name = self.draw.choice([self.new_name()] * 8 + ["..", "/tmp/x", "none.ckpt/x"])
+        elif service == "export_terrain":
+            name = self.draw.choice([self.new_name(), *["of_both_export"] * 4, "../x", "none.ckpt/x"])
+            request.name = name + self.draw.choice([*request.ENDINGS.split(), ".dae"])
         elif service in ("edit_terrain", "edit_plants"):
             count = {"capsule": 2, "polygon": self.draw.randrange(3, 6)}.get(request.shape, 0)
             request.points = [self.random.filled(Point()) for _ in range(count)] if not self.random.rarely() else []

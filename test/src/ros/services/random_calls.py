@@ -173,8 +173,8 @@ class RandomCalls(Scenarios):
 
     def without_generator(self, caller):
         """Services whose requests would be filled with words that mean nothing."""
-        known = {"apply_settings", "edit_plants", "edit_terrain", "edit_wind", "get_grid_map", "get_scenario", "get_submap",
-                 "load_checkpoint", "load_scenario", "load_terrain", "new_scenario", "pause", "query_terrain", "redo",
+        known = {"apply_settings", "edit_plants", "edit_terrain", "edit_wind", "export_terrain", "get_grid_map", "get_scenario",
+                 "get_submap", "load_checkpoint", "load_scenario", "load_terrain", "new_scenario", "pause", "query_terrain", "redo",
                  "reload_parameters", "reset", "resume", "save_checkpoint", "save_scenario", "save_terrain",
                  "set_parameters", "set_weather", "set_wind", "set_wind_schedule", "step", "undo"}
         return known.symmetric_difference(caller.services)
