@@ -14,8 +14,8 @@ from .live_parameters import config_of, parameters_of
 from .msg import SimulationStatus, WaterSpring, WindFeaturePoint, WindScheduleSegment
 from .services import SimulationError, call
 from .srv import (ApplySettings, EditPlants, EditPlantsRequest, EditTerrain, EditTerrainRequest, EditWind,
-                  EditWindRequest, GetScenario, GetSubmap, GetSubmapRequest, LoadCheckpoint, LoadScenario, LoadTerrain,
-                  NewScenario, QueryTerrain, QueryTerrainRequest, SaveCheckpoint, SaveScenario, SaveTerrain,
+                  EditWindRequest, ExportTerrain, GetScenario, GetSubmap, GetSubmapRequest, LoadCheckpoint, LoadScenario,
+                  LoadTerrain, NewScenario, QueryTerrain, QueryTerrainRequest, SaveCheckpoint, SaveScenario, SaveTerrain,
                   SetWeather, SetWeatherRequest, SetWind, SetWindRequest, SetWindSchedule, Step, Undo)
 
 
@@ -250,6 +250,10 @@ class Simulation:
     def save_terrain(self, name, format="geotiff"):
         """The terrain as a folder of files: geotiff, png16, or rosbag."""
         return self.call("save_terrain", SaveTerrain, name, format)
+
+    def export_terrain(self, name):
+        """The terrain for other programs, by the ending of the name (.obj, .glb, .world ...); answers with path, files, step."""
+        return self.call("export_terrain", ExportTerrain, name)
 
     def load_terrain(self, name, fill_nodata=False):
         """The terrain of such a folder, or of a bag with a GridMap, under the present physics."""

@@ -302,6 +302,13 @@ class Calls(Client):
         self.assertEqual(self.desert.save_checkpoint("a.ckpt").state_hash, start.state_hash)
         self.desert.step(1)
         self.assertEqual(self.desert.load_checkpoint("a.ckpt").state_hash, start.state_hash)
+        answer = self.desert.export_terrain("other/programs.obj")
+        self.assertEqual((answer.step, answer.path), (start.step, answer.files[0]))
+        self.assertEqual({os.path.relpath(file, self.folder) for file in answer.files},
+                         {"other/programs.obj", "other/programs.mtl", "other/programs_ground.png"})
+        self.assertTrue(all(os.path.getsize(file) > 0 for file in answer.files))
+        with self.assertRaisesRegex(desert_sim.SimulationError, "'.objj' is not an ending .*did you mean '.obj'"):
+            self.desert.export_terrain("other/programs.objj")
         self.desert.save_terrain("saved")
         self.desert.load_terrain("saved")
         self.assertEqual(self.desert.step(0).step, 0)
