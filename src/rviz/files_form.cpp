@@ -13,6 +13,7 @@
 #include <QLineEdit>
 #include <QVBoxLayout>
 
+#include "src/rviz/export_form.hpp"
 #include "src/rviz/fields.hpp"
 #include "src/rviz/new_scene_form.hpp"
 
@@ -64,6 +65,7 @@ FilesForm::FilesForm(NodeLink& link, QWidget* parent) : QWidget(parent), link_(l
   all->addWidget(make_scenario());
   all->addWidget(make_terrain());
   all->addWidget(make_checkpoint());
+  all->addWidget(new ExportForm(link));
   all->addWidget(new NewSceneForm(link));
   auto* const again =
       button("refresh", "Look for files again", "List what config/scenarios and ~data_dir have now");

@@ -1,5 +1,5 @@
 #pragma once
-/// Scenarios, terrains and checkpoints of a node, by name.
+/// Scenarios, terrains and checkpoints of a node, by name, and exports.
 
 #include <QWidget>
 

@@ -144,5 +144,42 @@ TEST_F(Authoring, AScenarioIsLoadedWithSettingsAndSavedWhole) {
   EXPECT_TRUE(node_has([&](const SimulationStatus& s) { return s.step == 3 && s.state_hash == hash; }));
 }
 
+TEST_F(Authoring, TheTerrainIsExportedByItsNameAndTheListOfFormats) {
+  window_->show_tab(scenes);
+  const auto exports = [&](const std::string& name) {
+    window_->click("export_terrain");
+    return window_->shows("export_error", "exported: " + data_dir_ + "/" + name) &&
+           std::filesystem::file_size(data_dir_ + "/" + name) > 0;
+  };
+  const auto ending = [&] { return list("export_ending")->currentText().toStdString(); };
+  window_->type("export_name", "dune");
+  list("export_ending")->setCurrentText(".obj");
+  node_->hold();
+  window_->click("export_terrain");
+  EXPECT_EQ(window_->text("export_error"), "export_terrain ...");
+  node_->release();
+  EXPECT_TRUE(
+      window_->shows("export_error", "exported: " + data_dir_ + "/dune.obj, dune.mtl, dune_ground.png"))
+      << window_->text("export_error");
+  window_->save("panel_export", 1000);
+  for (const char* const file : {"/dune.obj", "/dune.mtl", "/dune_ground.png"})
+    EXPECT_TRUE(std::filesystem::exists(data_dir_ + file)) << file;
+
+  window_->type("export_name", "sites/dune.stl");
+  EXPECT_EQ(ending(), ".stl") << "it is written";
+  EXPECT_TRUE(exports("sites/dune.stl")) << window_->text("export_error");
+  list("export_ending")->setCurrentText(".ply");
+  EXPECT_TRUE(exports("sites/dune.ply")) << "it is chosen: " << window_->text("export_error");
+
+  window_->type("export_name", "../dune");
+  EXPECT_EQ(ending(), ".ply");
+  window_->click("export_terrain");
+  EXPECT_TRUE(refuses("export_error", "'../dune.ply': contains '..'")) << window_->text("export_error");
+  window_->find<QLineEdit>("export_name")->clear();
+  window_->click("export_terrain");
+  EXPECT_TRUE(refuses("export_error", "is empty")) << window_->text("export_error");
+  EXPECT_EQ(statuses_->last().step, 0u);
+}
+
 }  // namespace
 }  // namespace rviz_test
