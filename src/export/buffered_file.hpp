@@ -2,16 +2,20 @@
 /// A file that is written in many small pieces, and appears under its name when it is complete.
 
 #include <cstring>
+#include <functional>
 #include <string>
+#include <utility>
 
 #include "src/core/temporary_file.hpp"
 
 namespace desert_sim {
 
-/// Throws what TemporaryFile throws.
+/// Throws what TemporaryFile and `after_piece` throw.
 class BufferedFile {
  public:
-  explicit BufferedFile(const std::string& path) : file_(path) {}
+  /// `after_piece`: called after each MiB, unless it is empty.
+  BufferedFile(const std::string& path, std::function<void()> after_piece)
+      : file_(path), after_piece_(std::move(after_piece)) {}
 
   void text(const std::string& text) { bytes(text.data(), text.size()); }
   /// The bytes of a number, the lowest one first.
@@ -34,9 +38,11 @@ class BufferedFile {
   void flush() {
     file_.write(buffer_);
     buffer_.clear();
+    if (after_piece_) after_piece_();
   }
 
   TemporaryFile file_;
+  const std::function<void()> after_piece_;
   std::string buffer_;
 };
 

@@ -1,6 +1,7 @@
 #pragma once
 /// A terrain at one moment, as other programs get it.
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -13,6 +14,9 @@ namespace desert_sim {
 struct ExportedTerrain {
   std::shared_ptr<const Snapshot> snapshot;  ///< has the elevation, and what gives the ground its colours
   std::shared_ptr<const PlantList> plants;   ///< null: none
+  /// Called after each piece of a mesh that is written; what it throws ends the export, and the file is as it
+  /// was before.
+  std::function<void()> after_piece = {};
 };
 
 /// What its snapshot has, as far as the terrain does.

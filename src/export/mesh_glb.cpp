@@ -158,6 +158,7 @@ void write_glb(const std::string& path, const ExportedTerrain& terrain) {
   if (scene.bytes() + of_the_text > most_bytes)
     throw ConfigError(path + ": a .glb has at most 4 GiB, and this terrain needs " +
                       number_text(scene.bytes() / (1 << 30)) + " (allowed: .ply, .stl or .obj)");
+  if (terrain.after_piece) terrain.after_piece();  // the scene; what follows is one call
   TemporaryFile file(path);
   std::ofstream stream(file.library_path(), std::ios::binary);
   tinygltf::TinyGLTF writer;

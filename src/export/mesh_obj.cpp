@@ -34,7 +34,8 @@ std::string materials(const std::string& picture, const render::Palette& palette
 
 class ObjFile {
  public:
-  ObjFile(const std::string& path, const Snapshot& snapshot) : file_(path), s_(snapshot) {}
+  ObjFile(const std::string& path, const ExportedTerrain& terrain)
+      : file_(path, terrain.after_piece), s_(*terrain.snapshot) {}
 
   void text(const std::string& lines) { file_.text(lines); }
   /// A group of triangles with the material of that name; `picture`: with the places of the vertices in it.
@@ -77,7 +78,7 @@ void write_obj(const std::string& path, const ExportedTerrain& terrain) {
   const auto name = [](const std::string& file) { return std::filesystem::path(file).filename().string(); };
   write_colours(picture, s.width, s.height, ground_colours(s, meshes.ground));
   write_file(library, materials(name(picture), s.palette));
-  ObjFile file(path, s);
+  ObjFile file(path, terrain);
   file.text("# " + frame_note(s) + "\n# x is east, y is north, z is up\nmtllib " + name(library) + "\n");
   file.add("ground", meshes.ground, true);
   file.add("water", meshes.water, false);

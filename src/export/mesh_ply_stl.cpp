@@ -36,7 +36,7 @@ void write_ply(const std::string& path, const ExportedTerrain& terrain) {
   const Snapshot& s = *terrain.snapshot;
   const render::Mesh ground = meshes_of(path, terrain).ground;
   const std::vector<render::PackedColour> colours = surface_colours(s, ground);
-  BufferedFile file(path);
+  BufferedFile file(path, terrain.after_piece);
   file.text(ply_header(s, ground));
   for (const render::Vertex& v : ground.vertices) {
     for (const float number : {v.x, v.y, v.z, v.normal_x, v.normal_y, v.normal_z}) file.number(number);
@@ -53,7 +53,7 @@ void write_ply(const std::string& path, const ExportedTerrain& terrain) {
 
 void write_stl(const std::string& path, const ExportedTerrain& terrain) {
   const render::Mesh ground = meshes_of(path, terrain).ground;
-  BufferedFile file(path);
+  BufferedFile file(path, terrain.after_piece);
   std::string header = frame_note(*terrain.snapshot);
   header.resize(stl_header_size, ' ');
   file.text(header);

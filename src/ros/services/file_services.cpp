@@ -145,7 +145,10 @@ void export_terrain_files(const ServiceContext& c, FilesLock& files, const Expor
   const Snapshot& snapshot = *terrain.state.snapshot;
   file.write([&](const std::string& path) {
     require_exportable(path, snapshot.width, snapshot.height, terrain.rasters);
-    export_terrain(path, {terrain.state.snapshot, terrain.state.plants});
+    export_terrain(path, {terrain.state.snapshot, terrain.state.plants, [&] {
+                            if (c.simulation.ended())
+                              throw ConfigError(file.path() + ": is not written: the node ends");
+                          }});
   });
   response.path = file.path();
   response.files = all;

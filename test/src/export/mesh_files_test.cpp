@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 #include <opencv2/imgcodecs.hpp>
+#include <utility>
 
 #include "src/core/error.hpp"
 #include "src/export/export_formats.hpp"
@@ -122,6 +123,25 @@ TEST_F(MeshFiles, AreAsTheyWereOnAFullDisk) {
     EXPECT_THROW(export_terrain(path(name), large), WriteError) << name;
     EXPECT_EQ(test::file_bytes(path(name)), "an older one");
   }
+}
+
+TEST_F(MeshFiles, AreAsTheyWereWhereTheyAreInterrupted) {
+  auto large = terrain_of(dunes(100, 100));
+  int pieces = 0;
+  large.after_piece = [&pieces] {
+    ++pieces;
+    throw ConfigError("enough");
+  };
+  for (const ExportFormat& format : export_formats()) {
+    const std::string ending = format.ending, name = "a" + ending;
+    if (ending == ".exr" || ending == ".png" || ending == ".world") continue;  // which are pictures
+    folder_.write(name, "an older one");
+    EXPECT_THROW(export_terrain(path(name), large), ConfigError) << name;
+    EXPECT_EQ(test::file_bytes(path(name)), "an older one");
+    EXPECT_EQ(std::exchange(pieces, 0), 1) << name;
+  }
+  for (const auto& entry : std::filesystem::directory_iterator(folder_.path("")))
+    EXPECT_NE(entry.path().extension(), ".part") << entry.path();
 }
 
 TEST_F(MeshFiles, NeedASurface) {

@@ -7,11 +7,13 @@
 #include <std_srvs/Trigger.h>
 
 #include <algorithm>
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <set>
 #include <sstream>
+#include <thread>
 
 #include "src/export/export_formats.hpp"
 #include "test/support/ros/child_process.hpp"
@@ -204,6 +206,29 @@ TEST_F(Exports, NeedASurfaceAndDoNotReplaceRastersOfTheScenario) {
   fs::create_symlink(folder_, folder_ + "/alias");
   refused("alias/dem.exr", "dem.exr, which the run reads", "another name");
   EXPECT_EQ(file_bytes(folder_ + "/dem.exr"), before);
+}
+
+/// It is given up, and leaves no part behind: 340 MB of text take many times as long as a node may to end.
+TEST_F(Exports, DoNotKeepANodeThatIsToEnd) {
+  std::ofstream(folder_ + "/large.yaml") << "grid: {width: 1400, height: 1400}\n"
+                                            "terrain: [uniform: {layer: sand, value: 1}]\n";
+  const std::string name = "/large_node", folder = folder_ + "/large";
+  NodeProcess node(name, {{"scenario", folder_ + "/large.yaml"}, {"data_dir", folder}});
+  ASSERT_TRUE(wait_until([&] { return ros::service::exists(name + "/export_terrain", false); }));
+  ExportTerrain exchange;
+  exchange.request = named("large.obj");
+  std::thread client([&] { ros::service::call(name + "/export_terrain", exchange); });
+  const auto part = [&] {
+    if (!fs::exists(folder)) return false;
+    for (const auto& entry : fs::directory_iterator(folder))
+      if (entry.path().filename().string().rfind(".large.obj.", 0) == 0) return true;
+    return false;
+  };
+  EXPECT_TRUE(wait_until(part));
+  EXPECT_EQ(node.end(SIGTERM), 0);
+  client.join();
+  EXPECT_FALSE(part());
+  EXPECT_FALSE(fs::exists(folder + "/large.obj")) << "or it was waited for";
 }
 
 }  // namespace
