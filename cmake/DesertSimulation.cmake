@@ -93,7 +93,7 @@ if(DESERT_WITH_ROS)
 endif()
 
 if(DESERT_WITH_RVIZ) # one library of all plugins, which rviz_plugins.xml names
-  desert_library(desert_rviz FOLDERS src/rviz LINK PUBLIC desert_client desert_render
+  desert_library(desert_rviz FOLDERS src/rviz LINK PUBLIC desert_client desert_render desert_base
     PRIVATE desert::random123 desert::yaml_cpp)
   desert_use_rviz(desert_rviz)
   desert_unity(desert_rviz 37)

@@ -4,6 +4,7 @@
 #include <desert_sim/EditPlants.h>
 #include <desert_sim/EditTerrain.h>
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -42,6 +43,14 @@ struct Brush {
   std::string
       mask;  ///< a raster below ~data_dir, whose values weigh the brush in its square; empty: a round brush
   double size = 0.5;  ///< plants: their radius relative to the largest for which there is room, 0.001 … 1
+
+  /// When it paints, if not at once: what a stroke paints becomes entries of run.timeline.
+  struct Later {
+    double time = 0;  ///< simulated [s]
+    bool from_now = true;
+    double every = 0, until = 0;  ///< as of an entry [s]; 0: not given
+  };
+  std::optional<Later> later = std::nullopt;
 };
 
 /// The materials in order, as the tool's property shows them.
@@ -56,8 +65,8 @@ std::string problem_of(const Brush& brush);
 /// For all materials but plants. With a mask a capsule is to be a circle, whose square is stamped. `level` is
 /// what `flatten` makes of the layer: the value where the stroke began [m].
 EditTerrain::Request terrain_request(const Brush& brush, const render::Capsule& capsule,
-                                     const std::string& stroke, double level);
+                                     const std::string& stroke, double level, bool alone = false);
 EditPlants::Request plants_request(const Brush& brush, const render::Capsule& capsule,
-                                   const std::string& stroke, std::uint64_t seed);
+                                   const std::string& stroke, std::uint64_t seed, bool alone = false);
 
 }  // namespace desert_sim

@@ -15,6 +15,7 @@
 #include <pluginlib/class_list_macros.hpp>
 
 #include "src/core/error.hpp"
+#include "src/core/shortest_decimal.hpp"
 #include "src/rviz/names.hpp"
 
 namespace desert_sim {
@@ -29,8 +30,12 @@ rviz::FloatProperty* number(const char* name, float value, float least, float mo
   return property;
 }
 
-render::PackedColour colour_of(Brush::Operation operation) {
-  switch (operation) {
+/// What a time's property says [s].
+double seconds_of(const rviz::FloatProperty* property) { return shortest_decimal(property->getFloat()); }
+
+render::PackedColour colour_of(const Brush& brush) {
+  if (brush.later) return render::pack({1, 0.85f, 0.2f});
+  switch (brush.operation) {
     case Brush::Operation::add:
       return render::pack({0.25f, 1, 0.35f});
     case Brush::Operation::remove:
@@ -75,6 +80,27 @@ BrushTool::BrushTool() {
                     "Plants that one pass puts on a square metre; Ctrl and the wheel change it.", parent);
   size_ = number("Plant Size", 0.5f, 0.001f, 1,
                  "Their radius relative to the largest for which there is room.", parent);
+  make_times(parent);
+}
+
+void BrushTool::make_times(rviz::Property* parent) {
+  when_ = new rviz::EnumProperty("When", "Now",
+                                 "Now, or later: a stroke becomes an entry of the scenario's timeline, which "
+                                 "the panel's tab Timeline lists.",
+                                 parent, SLOT(show_times()), this);
+  int option = 0;
+  for (const char* const name : {"Now", "From Now", "At Time"}) when_->addOption(name, option++);
+  constexpr float longest = 1e12f;
+  time_ = number("Time", 10, 0, longest, "Simulated time at which it is painted, or from now until then [s].",
+                 when_);
+  every_ = number("Every", 0, 0, longest, "Painted again each time after so long [s]; 0: once.", when_);
+  until_ = number("Until", 0, 0, longest, "Simulated time of the last repetition [s]; 0: for ever.", when_);
+  show_times();
+}
+
+void BrushTool::show_times() {
+  for (rviz::Property* const property : {time_, every_, until_})
+    property->setHidden(when_->getOptionInt() == 0);
 }
 
 BrushTool::~BrushTool() = default;
@@ -133,6 +159,9 @@ Brush BrushTool::brush(bool shift) const {
   result.species = species_->getStdString();
   result.density = static_cast<double>(density_->getFloat());
   result.size = static_cast<double>(size_->getFloat());
+  if (when_->getOptionInt() != 0)
+    result.later =
+        Brush::Later{seconds_of(time_), when_->getOptionInt() == 1, seconds_of(every_), seconds_of(until_)};
   return result;
 }
 
@@ -217,7 +246,7 @@ void BrushTool::draw() {
   if (!hovered_ || std::isnan(hovered_->z())) return marks_->hide();
   const Brush now = brush(shift_);
   const render::Place centre{hovered_->x(), hovered_->y()};
-  const render::PackedColour colour = colour_of(now.operation);
+  const render::PackedColour colour = colour_of(now);
   const auto ring = [&](double radius) {
     return SurfaceMarks::Line{render::drape(terrain_->field(), render::circle(centre, radius)), colour};
   };
@@ -241,8 +270,9 @@ void BrushTool::draw() {
 void BrushTool::show_status() {
   const std::string& problem = terrain_->problem();
   const std::string text = !problem.empty() ? problem : report_;
-  setStatus(QString::fromStdString((text.empty() ? "" : "<b>" + text + "</b> ") +
-                                   "<b>Left:</b> paint. <b>Shift:</b> remove. <b>Wheel:</b> radius. "
+  setStatus(QString::fromStdString((text.empty() ? "" : "<b>" + text + "</b> ") + "<b>Left:</b> paint" +
+                                   (when_->getOptionInt() == 0 ? "" : " later") +
+                                   ". <b>Shift:</b> remove. <b>Wheel:</b> radius. "
                                    "<b>Ctrl+Wheel:</b> strength. <b>Z:</b> undo. "
                                    "<b>Ctrl+Y:</b> redo. <b>Middle, Right, Alt+Left:</b> camera."));
 }

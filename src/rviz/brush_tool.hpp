@@ -49,8 +49,11 @@ class BrushTool : public rviz::Tool {
 
  private Q_SLOTS:
   void choose_node();
+  void show_times();
 
  private:
+  /// Makes the properties that say when it is painted.
+  void make_times(rviz::Property* parent);
   Brush brush(bool shift) const;
   void turn_wheel(rviz::ViewportMouseEvent& event);
   void press(bool shift);
@@ -63,8 +66,9 @@ class BrushTool : public rviz::Tool {
 
   rviz::StringProperty *node_, *mask_;
   rviz::EditableEnumProperty* species_;
-  rviz::EnumProperty *material_, *operation_;
+  rviz::EnumProperty *material_, *operation_, *when_;
   rviz::FloatProperty *radius_, *strength_, *inner_, *density_, *size_;
+  rviz::FloatProperty *time_, *every_, *until_;  ///< of when_
 
   std::unique_ptr<EditClient> client_;
   ServiceCaller caller_;  ///< for questions, which strokes do not wait for

@@ -1,16 +1,21 @@
 #include "src/rviz/edit_client.hpp"
 
-#include <desert_sim/QueryTerrain.h>
+#include <desert_sim/ApplySettings.h>
+#include <desert_sim/GetScenario.h>
 #include <desert_sim/Undo.h>
 #include <ros/node_handle.h>
 #include <ros/this_node.h>
 
 #include <chrono>
 #include <iomanip>
+#include <limits>
 #include <sstream>
 
 #include "src/core/error.hpp"
+#include "src/rviz/brush_entries.hpp"
 #include "src/rviz/names.hpp"
+#include "src/rviz/timeline_entries.hpp"
+#include "src/rviz/timeline_news.hpp"
 #include "src/rviz/undo_text.hpp"
 
 namespace desert_sim {
@@ -26,6 +31,24 @@ std::string number(double value) {
   std::ostringstream text;
   text << std::setprecision(3) << std::showpos << value;
   return text.str();
+}
+
+/// The value of a material at a sample [m].
+double depth_of(Brush::Material material, const TerrainSample& sample) {
+  switch (material) {
+    case Brush::Material::bedrock:
+      return sample.bedrock;
+    case Brush::Material::soil:
+      return sample.soil;
+    case Brush::Material::water:
+      return sample.water;
+    case Brush::Material::moisture:
+      return sample.moisture;
+    case Brush::Material::vegetation:
+      return sample.vegetation;
+    default:
+      return sample.sand;
+  }
 }
 
 /// No other stroke of any program has this name.
@@ -56,8 +79,8 @@ void EditClient::begin(const Brush& brush) {
   end();
   const std::lock_guard<std::mutex> lock(mutex_);
   Job job;
-  job.stroke.emplace(
-      Stroke{brush, {piece * brush.radius, tolerance * brush.radius}, unique_name(++strokes_)});
+  const double length = brush.later ? std::numeric_limits<double>::infinity() : piece * brush.radius;
+  job.stroke.emplace(Stroke{brush, {length, tolerance * brush.radius}, unique_name(++strokes_)});
   jobs_.push_back(std::move(job));
 }
 
@@ -130,22 +153,29 @@ void EditClient::run() {
     std::optional<render::Capsule> capsule;
     if (job.stroke) {
       capsule = job.stroke->path.take();
-      if (!capsule) {
-        if (job.stroke->path.finished())
-          jobs_.pop_front();
-        else
-          changed_.wait(lock);
+      if (capsule && job.stroke->brush.later) {
+        job.stroke->later.push_back(*capsule);
+        continue;
+      }
+      if (!capsule && !job.stroke->path.finished()) {
+        changed_.wait(lock);
+        continue;
+      }
+      if (!capsule && job.stroke->later.empty()) {
+        jobs_.pop_front();
         continue;
       }
     }
     next = Clock::now() + std::chrono::milliseconds(shortest_pause_ms);
     lock.unlock();
-    if (job.stroke)
+    if (capsule)
       paint(*job.stroke, *capsule);
+    else if (job.stroke)
+      put_into_timeline(*job.stroke);
     else
       call_turn(job.redo);
     lock.lock();
-    if (!job.stroke) jobs_.pop_front();
+    if (!capsule) jobs_.pop_front();
   }
 }
 
@@ -171,29 +201,15 @@ typename Service::Response EditClient::call(const char* name, const typename Ser
   return exchange.response;
 }
 
-/// The value of the brush's layer [m].
-double EditClient::level_at(const Stroke& stroke, const render::Place& place) {
+/// The terrain where a stroke begins.
+QueryTerrain::Response EditClient::sample(const render::Place& place) {
   QueryTerrain::Request request;
   request.points.resize(1);
   request.points[0].x = place.x;
   request.points[0].y = place.y;
-  const QueryTerrain::Response answer = call<QueryTerrain>("query_terrain", request);
-  const TerrainSample& sample = answer.samples.at(0);
-  if (!sample.in_bounds) throw ConfigError("The stroke begins outside the terrain.");
-  switch (stroke.brush.material) {
-    case Brush::Material::bedrock:
-      return sample.bedrock;
-    case Brush::Material::soil:
-      return sample.soil;
-    case Brush::Material::water:
-      return sample.water;
-    case Brush::Material::moisture:
-      return sample.moisture;
-    case Brush::Material::vegetation:
-      return sample.vegetation;
-    default:
-      return sample.sand;
-  }
+  QueryTerrain::Response answer = call<QueryTerrain>("query_terrain", request);
+  if (!answer.samples.at(0).in_bounds) throw ConfigError("The stroke begins outside the terrain.");
+  return answer;
 }
 
 void EditClient::paint(Stroke& stroke, const render::Capsule& capsule) {
@@ -201,7 +217,7 @@ void EditClient::paint(Stroke& stroke, const render::Capsule& capsule) {
   const std::string layer = layer_of(brush.material);
   try {
     if (brush.operation == Brush::Operation::flatten && !stroke.level)
-      stroke.level = level_at(stroke, capsule.from);
+      stroke.level = depth_of(brush.material, sample(capsule.from).samples[0]);
     if (brush.material == Brush::Material::plants) {
       const std::uint64_t seed = std::hash<std::string>()(stroke.name) + calls();
       stroke.plants +=
@@ -219,6 +235,32 @@ void EditClient::paint(Stroke& stroke, const render::Capsule& capsule) {
   } catch (const ConfigError& error) {
     if (!stroke.failed) report(false, error.what());
     stroke.failed = true;
+  }
+}
+
+void EditClient::put_into_timeline(Stroke& stroke) {
+  const Brush& brush = stroke.brush;
+  try {
+    const QueryTerrain::Response now = sample(stroke.later.front().from);
+    const double level = depth_of(brush.material, now.samples[0]);
+    TimelineEntries entries = timeline_entries(call<GetScenario>("get_scenario", {}).yaml);
+    const bool alone = stroke.later.size() == 1;
+    std::string entry;
+    std::uint64_t seed = std::hash<std::string>()(stroke.name) % 1'000'000;
+    for (const render::Capsule& capsule : stroke.later) {
+      entry =
+          brush.material == Brush::Material::plants
+              ? timeline_entry(*brush.later, now.sim_time, plants_request(brush, capsule, "", ++seed, alone))
+              : timeline_entry(*brush.later, now.sim_time, terrain_request(brush, capsule, "", level, alone));
+      insert_entry(entries, entry);
+    }
+    ApplySettings::Request request;
+    request.settings = {timeline_setting(entries)};
+    call<ApplySettings>("apply_settings", request);
+    TimelineNews::tell(full_name(node_, "node"));
+    report(true, "timeline: " + words_of(entry).when + ", " + layer_of(brush.material));
+  } catch (const ConfigError& error) {
+    report(false, error.what());
   }
 }
 

@@ -1,8 +1,10 @@
 #pragma once
 /// Sends edits to a node on a thread of its own, so that nobody waits for the node. One call is under way
 /// at a time, and at most so many a second; what is painted meanwhile grows the path of its stroke, of
-/// which the next call takes one capsule (render::StrokePath).
+/// which the next call takes one capsule (render::StrokePath). What a brush paints later (Brush::later) is
+/// sent when its stroke has ended: entries of run.timeline, one for each straight part.
 
+#include <desert_sim/QueryTerrain.h>
 #include <ros/service_client.h>
 
 #include <condition_variable>
@@ -11,6 +13,7 @@
 #include <optional>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "src/rviz/brush.hpp"
 
@@ -63,6 +66,7 @@ class EditClient {
     double volume = 0;  ///< [m³] so far
     std::int64_t plants = 0;
     std::optional<double> level = std::nullopt;  ///< for flatten: known from the first call on
+    std::vector<render::Capsule> later{};        ///< what is still to be put into the timeline
   };
   struct Job {
     std::optional<Stroke> stroke;  ///< else undo or redo
@@ -72,7 +76,8 @@ class EditClient {
   void turn(bool redo);
   void run();
   void paint(Stroke& stroke, const render::Capsule& capsule);
-  double level_at(const Stroke& stroke, const render::Place& place);
+  void put_into_timeline(Stroke& stroke);
+  QueryTerrain::Response sample(const render::Place& place);
   void call_turn(bool redo);
   template <class Service>
   typename Service::Response call(const char* name, const typename Service::Request& request);

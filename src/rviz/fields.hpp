@@ -1,6 +1,7 @@
 #pragma once
 /// Small widgets that the forms of the panel share.
 
+#include <QComboBox>
 #include <QDoubleSpinBox>
 #include <QPushButton>
 #include <QString>
@@ -20,6 +21,18 @@ class NumberField : public QDoubleSpinBox {
     else
       event->ignore();
   }
+};
+
+/// A list to choose from that leaves the wheel to who scrolls the panel, and no wider than it must be.
+class ChoiceField : public QComboBox {
+ public:
+  explicit ChoiceField(const QString& name) {
+    setObjectName(name);
+    setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
+  }
+
+ protected:
+  void wheelEvent(QWheelEvent* event) override { event->ignore(); }
 };
 
 /// A field for a number. It reports a value only when it is complete, not each digit.

@@ -14,6 +14,7 @@
 #include "src/rviz/plants_form.hpp"
 #include "src/rviz/run_controls.hpp"
 #include "src/rviz/status_view.hpp"
+#include "src/rviz/timeline_form.hpp"
 #include "src/rviz/weather_form.hpp"
 #include "src/rviz/wind_form.hpp"
 
@@ -85,6 +86,12 @@ QWidget* DesertPanel::make_controls() {
             physics->show_parameters(*parameters);
           });
   tabs->addTab(scrolled(physics), "Physics");
+  timeline_ = new TimelineForm(link_);
+  connect(&link_, &NodeLink::description_came, timeline_,
+          [this](const dynamic_reconfigure::ConfigDescriptionConstPtr& description) {
+            timeline_->describe(*description);
+          });
+  tabs->addTab(scrolled(timeline_), "Timeline");
   plants_ = new PlantsForm(link_);
   tabs->addTab(scrolled(plants_), "Plants");
   tabs->addTab(scrolled(files_), "Scenes");
@@ -126,6 +133,7 @@ void DesertPanel::show_status(const SimulationStatusConstPtr& status) {
   status_->show_status(status);
   run_->show_status(*status);
   wind_->show_status(*status);
+  timeline_->show_status(*status);
   if (status->scenario == scenario_) return;
   scenario_ = status->scenario;
   plants_->refresh();

@@ -14,6 +14,7 @@ class FilesForm;
 class PlantsForm;
 class RunControls;
 class StatusView;
+class TimelineForm;
 class WindForm;
 
 class DesertPanel : public rviz::Panel {
@@ -44,6 +45,7 @@ class DesertPanel : public rviz::Panel {
   DriveForm* drive_;
   FilesForm* files_;
   PlantsForm* plants_;
+  TimelineForm* timeline_;
   std::string scenario_;  ///< whose species are shown
   QWidget* controls_;     ///< all that needs a node
 };

@@ -8,7 +8,6 @@
 #include <QFormLayout>
 #include <QHBoxLayout>
 #include <QLineEdit>
-#include <QRegularExpression>
 #include <QVBoxLayout>
 
 #include "src/rviz/fields.hpp"
@@ -18,38 +17,6 @@ namespace desert_sim {
 namespace {
 
 constexpr std::size_t most_found = 60;  // rows of a search: who finds more searches on
-
-QString number_text(double value) { return QString::number(value, 'g', 9); }
-
-/// The values of all parameters with a section, by path.
-std::map<std::string, QString> texts_of(const dynamic_reconfigure::Config& config) {
-  std::map<std::string, QString> all;
-  const auto add = [&all](std::string name, const QString& value) {
-    const std::size_t at = name.find("__");
-    if (at != std::string::npos) all[name.replace(at, 2, ".")] = value;
-  };
-  for (const auto& entry : config.bools) add(entry.name, entry.value ? "true" : "false");
-  for (const auto& entry : config.ints) add(entry.name, QString::number(entry.value));
-  for (const auto& entry : config.doubles) add(entry.name, number_text(entry.value));
-  for (const auto& entry : config.strs) add(entry.name, QString::fromStdString(entry.value));
-  return all;
-}
-
-/// The choices in the Python dictionary that rqt_reconfigure reads.
-QStringList choices_of(const std::string& edit_method) {
-  QStringList choices;
-  auto found = QRegularExpression("'value': '([^']*)'").globalMatch(QString::fromStdString(edit_method));
-  while (found.hasNext()) choices << found.next().captured(1);
-  return choices;
-}
-
-/// Parts the description of a parameter into what it is and, in brackets at the end, its unit.
-void split_unit(const std::string& description, QString& text, QString& unit) {
-  const QRegularExpressionMatch match =
-      QRegularExpression("^(.*) \\[([^\\]]*)\\]$").match(QString::fromStdString(description));
-  text = match.hasMatch() ? match.captured(1) : QString::fromStdString(description);
-  unit = match.hasMatch() ? match.captured(2) : QString();
-}
 
 }  // namespace
 
@@ -88,30 +55,16 @@ PhysicsForm::PhysicsForm(NodeLink& link, QWidget* parent) : QWidget(parent), lin
 }
 
 void PhysicsForm::describe(const dynamic_reconfigure::ConfigDescription& description) {
-  const std::map<std::string, QString> least = texts_of(description.min), most = texts_of(description.max);
   const QString chosen = section_->currentText();
-  parameters_.clear();
+  parameters_ = list_live_parameters(description);
   QStringList sections;
-  for (const auto& group : description.groups)
-    for (const auto& row : group.parameters) {
-      const std::size_t at = row.name.find("__");
-      if (at == std::string::npos) continue;  // of the node, and not of its scenario
-      Parameter parameter{row.name.substr(0, at), row.name.substr(at + 2), {}, {}, {}, {},
-                          row.type == "bool"};
-      split_unit(row.description, parameter.text, parameter.unit);
-      parameter.choices = choices_of(row.edit_method);
-      if (row.type == "double" || row.type == "int")
-        parameter.range =
-            QStringLiteral("%1 … %2").arg(least.at(parameter.path()), most.at(parameter.path()));
-      sections << QString::fromStdString(parameter.section);
-      parameters_.push_back(std::move(parameter));
-    }
+  for (const LiveParameter& parameter : parameters_) sections << QString::fromStdString(parameter.section);
   sections.removeDuplicates();
   const QSignalBlocker quiet(section_);
   section_->clear();
   section_->addItems(sections);
   section_->setCurrentIndex(std::max(0, section_->findText(chosen)));
-  values_ = texts_of(description.dflt);
+  values_ = live_values(description.dflt);
   choose();
 }
 
@@ -119,15 +72,14 @@ void PhysicsForm::choose() {
   fields_.clear();
   while (form_->rowCount() > 0) form_->removeRow(0);
   const QString wanted = search_->text().trimmed(), section = section_->currentText();
-  for (const Parameter& parameter : parameters_) {
+  for (const LiveParameter& parameter : parameters_) {
     const QString path = QString::fromStdString(parameter.path());
     const bool found = wanted.isEmpty() ? QString::fromStdString(parameter.section) == section
                                         : (path + " " + parameter.text).contains(wanted, Qt::CaseInsensitive);
     if (!found || fields_.size() >= most_found) continue;
     auto* const label = new QLabel(wanted.isEmpty() ? QString::fromStdString(parameter.name) : path);
     QWidget* const field = make_field(parameter);
-    const QString tip = parameter.text + (parameter.range.isEmpty() ? "" : "\nallowed: " + parameter.range) +
-                        (parameter.unit.isEmpty() ? "" : " " + parameter.unit);
+    const QString tip = parameter.tip();
     label->setToolTip(tip);
     field->setToolTip(tip);
     field->setObjectName("physics_" + path);
@@ -140,7 +92,7 @@ void PhysicsForm::choose() {
   show_values();
 }
 
-QWidget* PhysicsForm::make_field(const Parameter& parameter) {
+QWidget* PhysicsForm::make_field(const LiveParameter& parameter) {
   if (parameter.is_switch) {
     auto* const box = new QCheckBox;
     connect(box, &QCheckBox::clicked, this,
@@ -164,7 +116,7 @@ QWidget* PhysicsForm::make_field(const Parameter& parameter) {
 }
 
 void PhysicsForm::show_parameters(const dynamic_reconfigure::Config& parameters) {
-  values_ = texts_of(parameters);
+  values_ = live_values(parameters);
   show_values();
 }
 
@@ -179,7 +131,7 @@ void PhysicsForm::show_values() {
   }
 }
 
-void PhysicsForm::set(const Parameter& parameter, const QString& value) {
+void PhysicsForm::set(const LiveParameter& parameter, const QString& value) {
   ApplySettingsRequest request;
   request.settings = {parameter.path() + "=" + value.toStdString()};
   request.ramp = ramp_->value();
@@ -198,7 +150,7 @@ void PhysicsForm::reset_to(const GetScenarioResponse& start) {
   request.ramp = ramp_->value();
   std::map<std::string, QString> values;
   const YAML::Node scenario = YAML::Load(start.yaml);
-  for (const Parameter& parameter : parameters_) {
+  for (const LiveParameter& parameter : parameters_) {
     const YAML::Node value = scenario[parameter.section][parameter.name];
     if (fields_.count(parameter.path()) == 0 || !value) continue;
     YAML::Emitter text;

@@ -3,7 +3,6 @@
 /// them (~parameter_descriptions): names, units, ranges and choices are those of its parameter tables.
 
 #include <desert_sim/GetScenario.h>
-#include <dynamic_reconfigure/ConfigDescription.h>
 
 #include <QString>
 #include <QWidget>
@@ -11,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "src/rviz/live_parameter_list.hpp"
 #include "src/rviz/node_link.hpp"
 
 class QComboBox;
@@ -32,24 +32,16 @@ class PhysicsForm : public QWidget {
   void show_parameters(const dynamic_reconfigure::Config& parameters);
 
  private:
-  struct Parameter {
-    std::string section, name;  ///< "rain", "rate"
-    QString text, unit, range;  ///< `text`: what it is
-    QStringList choices;        ///< empty: any text or number
-    bool is_switch = false;
-    std::string path() const { return section + "." + name; }
-  };
-
   /// Shows the rows of the chosen section, or of all parameters that have what is searched for.
   void choose();
-  QWidget* make_field(const Parameter& parameter);
+  QWidget* make_field(const LiveParameter& parameter);
   void show_values();
-  void set(const Parameter& parameter, const QString& value);
+  void set(const LiveParameter& parameter, const QString& value);
   void reset_section();
   void reset_to(const GetScenarioResponse& start);
 
   NodeLink& link_;
-  std::vector<Parameter> parameters_;
+  std::vector<LiveParameter> parameters_;
   std::map<std::string, QString> values_;   ///< by path
   std::map<std::string, QWidget*> fields_;  ///< that are shown, by path
   QComboBox* section_;

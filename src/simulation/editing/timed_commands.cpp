@@ -12,6 +12,7 @@
 #include "src/scenario/yaml_parameters.hpp"
 #include "src/simulation/commands/command_yaml.hpp"
 #include "src/simulation/commands/edit_checks.hpp"
+#include "src/simulation/commands/timed_command_names.hpp"
 #include "src/simulation/editing/commands.hpp"
 #include "src/simulation/editing/plant_edit.hpp"
 
@@ -19,15 +20,11 @@ namespace desert_sim {
 
 namespace {
 
-constexpr const char* timed_commands[] = {command::SetWind::name, command::SetWindSchedule::name,
-                                          command::EditWind::name, command::EditTerrain::name,
-                                          command::EditPlants::name};
-
 void require_timed(const YAML::Node& given) {
   const std::string name = given["command"].IsScalar() ? given["command"].Scalar() : "?";
   const auto is = [&name](const char* known) { return name == known; };
-  if (std::any_of(std::begin(timed_commands), std::end(timed_commands), is)) return;
-  throw ConfigError("command: " + not_one_of(name, joined(timed_commands)) +
+  if (std::any_of(std::begin(timed_command_names), std::end(timed_command_names), is)) return;
+  throw ConfigError("command: " + not_one_of(name, joined(timed_command_names)) +
                     (name == command::SetParameters::name ? "; write set: {path: value}" : ""));
 }
 

@@ -1,26 +1,13 @@
 // The panel's tabs for parameters, species and new scenes: what is typed reaches the node, and what it
 // refuses is shown.
 
-#include <desert_sim/GetScenario.h>
-#include <yaml-cpp/yaml.h>
-
 #include "src/rviz/scene_lists.hpp"
 #include "test/src/rviz/panel_fixture.hpp"
 
 namespace rviz_test {
 namespace {
 
-class Authoring : public Panel {
- protected:
-  YAML::Node scenario() { return YAML::Load(node_->call<desert_sim::GetScenario>("get_scenario", {}).yaml); }
-  bool scenario_has(const std::function<bool(const YAML::Node&)>& fits) {
-    return window_->run_until([&] { return fits(scenario()); });
-  }
-  bool refuses(const std::string& line, const std::string& reason) {
-    return window_->run_until([&] { return window_->error(line).find(reason) != std::string::npos; });
-  }
-  QComboBox* list(const std::string& name) { return window_->find<QComboBox>(name); }
-};
+class Authoring : public Panel {};
 
 TEST_F(Authoring, AnyLiveParameterIsSetWithinItsRangeAndReset) {
   window_->show_tab(physics);

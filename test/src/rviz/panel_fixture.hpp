@@ -1,9 +1,11 @@
 #pragma once
 /// The panel desert_sim/Panel with a node of its own.
 
+#include <desert_sim/GetScenario.h>
 #include <desert_sim/SimulationStatus.h>
 #include <gtest/gtest.h>
 #include <ros/ros.h>
+#include <yaml-cpp/yaml.h>
 
 #include <QApplication>
 #include <filesystem>
@@ -64,6 +66,15 @@ class Panel : public testing::Test {
   bool node_has(const std::function<bool(const SimulationStatus&)>& fits) {
     return window_->run_until([&] { return statuses_->count() > 0 && fits(statuses_->last()); });
   }
+  YAML::Node scenario() { return YAML::Load(node_->call<desert_sim::GetScenario>("get_scenario", {}).yaml); }
+  bool scenario_has(const std::function<bool(const YAML::Node&)>& fits) {
+    return window_->run_until([&] { return fits(scenario()); });
+  }
+  /// Waits until a line says in red why something was refused.
+  bool refuses(const std::string& line, const std::string& reason) {
+    return window_->run_until([&] { return window_->error(line).find(reason) != std::string::npos; });
+  }
+  QComboBox* list(const std::string& name) { return window_->find<QComboBox>(name); }
 
   static constexpr const char *node_name = "/panel_node", *pause_service = "/panel_node/pause";
   static inline Screen* screen_ = nullptr;

@@ -10,6 +10,7 @@
 #include <QLabel>
 #include <QLineEdit>
 #include <QTabWidget>
+#include <QTableWidget>
 #include <QTest>
 #include <cstdlib>
 #include <functional>
@@ -23,7 +24,7 @@
 namespace rviz_test {
 
 /// The tabs of the panel, in their order.
-enum Tab { wind, weather, physics, plants, scenes, drive };
+enum Tab { wind, weather, physics, timeline, plants, scenes, drive };
 
 class PanelWindow {
  public:
@@ -58,6 +59,17 @@ class PanelWindow {
 
   void show_tab(Tab index) { find<QTabWidget>("tabs")->setCurrentIndex(index); }
   void click(const std::string& button) { QTest::mouseClick(find<QAbstractButton>(button), Qt::LeftButton); }
+  /// Clicks a row of a table.
+  void choose_row(const std::string& table, int row) {
+    auto* const widget = find<QTableWidget>(table);
+    QTest::mouseClick(widget->viewport(), Qt::LeftButton, {},
+                      widget->visualItemRect(widget->item(row, 0)).center());
+  }
+  /// What a cell of a table says.
+  std::string cell_text(const std::string& table, int row, int column) const {
+    const QTableWidgetItem* const item = find<QTableWidget>(table)->item(row, column);
+    return item ? item->text().toStdString() : "";
+  }
   void type(const std::string& field, const std::string& text) {
     auto* const widget = find<QWidget>(field);
     auto* const edit =
