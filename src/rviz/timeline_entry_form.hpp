@@ -28,8 +28,8 @@ class TimelineEntryForm : public QWidget {
   /// How far ahead an entry is at first [s], unless somebody has typed when.
   void suggest(double ahead);
   void show_entry(const std::string& entry);
-  /// What the fields say; a time from now counts from `now` [s]. Throws ConfigError where that is no YAML; all
-  /// else is for the node to judge.
+  /// What the fields say; a time from now counts from `now` [s]. Throws ConfigError where that is no YAML;
+  /// all else is for the node to judge.
   std::string entry(double now) const;
 
  private:

@@ -7,6 +7,7 @@
 #include <QHBoxLayout>
 #include <QHeaderView>
 #include <QTableWidget>
+#include <QTimer>
 #include <QVBoxLayout>
 #include <algorithm>
 #include <utility>
@@ -51,6 +52,7 @@ TimelineForm::TimelineForm(NodeLink& link, QWidget* parent) : QWidget(parent), l
     return row;
   };
   auto* const list = new QGroupBox("What happens when (run.timeline)");
+  list->setSizePolicy(QSizePolicy::Preferred, QSizePolicy::Maximum);
   auto* const list_rows = new QVBoxLayout(list);
   list_rows->addWidget(none_);
   list_rows->addWidget(table_);
@@ -97,7 +99,9 @@ void TimelineForm::make_table() {
   table_->setEditTriggers(QAbstractItemView::NoEditTriggers);
   table_->setSelectionBehavior(QAbstractItemView::SelectRows);
   table_->setSelectionMode(QAbstractItemView::ExtendedSelection);
-  connect(table_->horizontalHeader(), &QHeaderView::sectionResized, this, &TimelineForm::fit_height);
+  // Not while it is being laid out, which would not be laid out again.
+  connect(table_->horizontalHeader(), &QHeaderView::sectionResized, this,
+          [this] { QTimer::singleShot(0, this, &TimelineForm::fit_height); });
 }
 
 void TimelineForm::describe(const dynamic_reconfigure::ConfigDescription& description) {

@@ -86,7 +86,7 @@ class PanelWindow {
     const char* const folder = std::getenv("DESERT_PICTURES");
     if (!folder) return;
     panel_->resize(panel_->width(), height);
-    QTest::qWait(1);  // what is laid out anew is painted
+    QTest::qWait(50);  // what is laid out anew is painted
     panel_->grab().save(QString::fromStdString(std::string(folder) + "/" + name + ".png"));
   }
 
