@@ -1,6 +1,7 @@
 // The tool desert_sim/Brush with When set: strokes become entries of the timeline.
 
 #include <desert_sim/ApplySettings.h>
+#include <desert_sim/EditPlants.h>
 #include <desert_sim/GetScenario.h>
 #include <yaml-cpp/yaml.h>
 
@@ -91,6 +92,42 @@ TEST_F(LaterBrush, AStraightStrokeIsOneEntryOfFullStrength) {
   EXPECT_NEAR(static_cast<double>(at(layer("sand_depth"), {45, 13}) - at(before, {45, 13})), 0.5, 0.1);
   node_test::step(2);
   EXPECT_NEAR(static_cast<double>(at(layer("sand_depth"), {65, 25}) - at(before, {65, 25})), 1, 0.1);
+}
+
+/// Takes all plants away; how many there were.
+long cleared_plants() {
+  desert_sim::EditPlants::Request request;
+  request.operation = request.CLEAR;
+  request.shape = "circle";
+  request.center.x = 32;
+  request.center.y = 24;
+  request.radius = 20;
+  const auto answer = call<desert_sim::EditPlants>("edit_plants", request);
+  EXPECT_TRUE(answer.success) << answer.message;
+  return -answer.plants;
+}
+
+TEST_F(LaterBrush, PlantsArePutAtTheirTime) {
+  load("garden.yaml");
+  window_->look_from_above(32, 24, 10);
+  EXPECT_TRUE(window_->run_until([&] {
+    mouse(QEvent::MouseMove, {32, 24}, Qt::NoButton, Qt::NoModifier, 4);
+    return brush_->property("over_terrain").toBool();
+  }));
+  set_tool(brush_, "When", "From Now");
+  set_when("Time", 1);
+  set_tool(brush_, "Material", "Plants");
+  set_tool(brush_, "Species", "bush");
+  set_tool(brush_, "Plant Density", 0.3);
+  set_tool(brush_, "Plant Size", 0.1);
+  drag({15, 20}, {45, 28}, 20, Qt::NoModifier, 4);
+  wait_for(brush_);
+  ASSERT_EQ(timeline_of_node().size(), 1u) << text(brush_, "report");
+  EXPECT_EQ(cleared_plants(), 0) << "not yet";
+  node_test::step(5);
+  const long plants = cleared_plants();
+  EXPECT_GT(plants, 20);
+  EXPECT_LT(plants, 1.5 * 0.3 * 2 * 5 * 31) << "about the density on its width";
 }
 
 TEST_F(LaterBrush, WhatTheNodeRefusesIsSaidAtTheBrush) {
