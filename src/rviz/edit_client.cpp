@@ -14,8 +14,8 @@
 #include "src/core/error.hpp"
 #include "src/rviz/brush_entries.hpp"
 #include "src/rviz/names.hpp"
+#include "src/rviz/settings_news.hpp"
 #include "src/rviz/timeline_entries.hpp"
-#include "src/rviz/timeline_news.hpp"
 #include "src/rviz/undo_text.hpp"
 
 namespace desert_sim {
@@ -257,7 +257,7 @@ void EditClient::put_into_timeline(Stroke& stroke) {
     ApplySettings::Request request;
     request.settings = {timeline_setting(entries)};
     call<ApplySettings>("apply_settings", request);
-    TimelineNews::tell(full_name(node_, "node"));
+    SettingsNews::tell(full_name(node_, "node"));
     report(true, "timeline: " + words_of(entry).when + ", " + layer_of(brush.material));
   } catch (const ConfigError& error) {
     report(false, error.what());
@@ -268,6 +268,7 @@ void EditClient::call_turn(bool redo) {
   try {
     const Undo::Response answer = call<Undo>(redo ? "redo" : "undo", {});
     const std::string what = turn_text(answer);
+    if (changes_settings(answer)) SettingsNews::tell(full_name(node_, "node"));
     report(true, (redo ? "Redone" : "Undone") + (what.empty() ? "" : ", " + what) + "; " +
                      std::to_string(answer.undoable) + " can be undone, " + std::to_string(answer.redoable) +
                      " redone");

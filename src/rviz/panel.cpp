@@ -13,6 +13,7 @@
 #include "src/rviz/physics_form.hpp"
 #include "src/rviz/plants_form.hpp"
 #include "src/rviz/run_controls.hpp"
+#include "src/rviz/settings_news.hpp"
 #include "src/rviz/status_view.hpp"
 #include "src/rviz/timeline_form.hpp"
 #include "src/rviz/weather_form.hpp"
@@ -93,6 +94,9 @@ QWidget* DesertPanel::make_controls() {
           });
   tabs->addTab(scrolled(timeline_), "Timeline");
   plants_ = new PlantsForm(link_);
+  connect(&SettingsNews::instance(), &SettingsNews::changed, plants_, [this](const QString& node) {
+    if (node.toStdString() == link_.node()) plants_->refresh();
+  });
   tabs->addTab(scrolled(plants_), "Plants");
   tabs->addTab(scrolled(files_), "Scenes");
   drive_ = new DriveForm(link_);

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "src/rviz/fields.hpp"
+#include "src/rviz/settings_news.hpp"
 #include "src/rviz/undo_text.hpp"
 
 namespace desert_sim {
@@ -100,6 +101,7 @@ QWidget* RunControls::make_undo_row() {
 void RunControls::turn(const char* service) {
   link_.call<Undo>(undo_error_, service, {}, [this](const UndoResponse& answer) {
     if (const std::string text = turn_text(answer); !text.empty()) undo_error_->show_note(text);
+    if (changes_settings(answer)) SettingsNews::tell(link_.node());
   });
 }
 

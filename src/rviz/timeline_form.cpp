@@ -14,8 +14,8 @@
 
 #include "src/core/error.hpp"
 #include "src/rviz/fields.hpp"
+#include "src/rviz/settings_news.hpp"
 #include "src/rviz/timeline_entry_form.hpp"
-#include "src/rviz/timeline_news.hpp"
 
 namespace desert_sim {
 
@@ -76,7 +76,7 @@ TimelineForm::TimelineForm(NodeLink& link, QWidget* parent) : QWidget(parent), l
   connect(add_button, &QPushButton::clicked, this, &TimelineForm::add);
   connect(change_, &QPushButton::clicked, this, &TimelineForm::change);
   connect(remove_, &QPushButton::clicked, this, &TimelineForm::remove);
-  connect(&TimelineNews::instance(), &TimelineNews::changed, this, [this](const QString& node) {
+  connect(&SettingsNews::instance(), &SettingsNews::changed, this, [this](const QString& node) {
     if (node.toStdString() == link_.node()) refresh();
   });
   connect(&link_.watch(), &NodeWatch::presence_changed, this, [this] {

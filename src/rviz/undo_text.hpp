@@ -11,4 +11,9 @@ namespace desert_sim {
 /// exact one of edits.
 std::string turn_text(const Undo::Response& answer);
 
+/// Whether forms that show settings are to look again.
+inline bool changes_settings(const Undo::Response& answer) {
+  return !answer.settings.empty() || answer.terrain_replaced;
+}
+
 }  // namespace desert_sim

@@ -96,6 +96,22 @@ TEST_F(TimelineTab, AParameterChangesAtItsTimeAndTheListSaysSo) {
   window_->save("panel_timeline", 900);
 }
 
+TEST_F(TimelineTab, AnEntryIsUndoneAndRedone) {
+  set_timeline("[{time: 1.0e5, set: {saltation.lift: 0.5}}]");
+  ASSERT_TRUE(has_rows(1));
+  add_parameter(steps(1.0e6), "saltation.lift",
+                "0.35");  // ~status does not tell of it: it is not the next one
+  ASSERT_TRUE(has_rows(2)) << window_->text("entry_error");
+  ASSERT_TRUE(window_->run_until([&] { return window_->enabled("undo"); }));
+  window_->click("undo");
+  EXPECT_TRUE(has_rows(1)) << "the list follows";
+  EXPECT_EQ(entries().size(), 1u);
+  ASSERT_TRUE(window_->run_until([&] { return window_->enabled("redo"); }));
+  window_->click("redo");
+  EXPECT_TRUE(has_rows(2));
+  EXPECT_EQ(entries().size(), 2u);
+}
+
 TEST_F(TimelineTab, AnEntryIsChangedAndRemovedAndOthersStayAsTheyAre) {
   std::string raster;  // 20 x 20 floats of 0 in base64
   for (int n = 0; n < 2133; ++n) raster += 'A';

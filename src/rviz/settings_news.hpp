@@ -1,6 +1,6 @@
 #pragma once
-/// Tells the panel that a tool in the same rviz has changed a node's timeline, of which ~status has only the
-/// next entry.
+/// Tells the panel that something in the same rviz has changed a node's settings (its timeline, its species),
+/// of which ~status does not tell all: the brush, an undo.
 
 #include <QObject>
 #include <QString>
@@ -8,11 +8,11 @@
 
 namespace desert_sim {
 
-class TimelineNews : public QObject {
+class SettingsNews : public QObject {
   Q_OBJECT
 
  public:
-  static TimelineNews& instance();
+  static SettingsNews& instance();
   /// From any thread. `node`: its full name.
   static void tell(const std::string& node);
 
