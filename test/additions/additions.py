@@ -310,9 +310,11 @@ string message  # reason if success is false
 struct Calm {
   static constexpr const char* name = "calm";
   float ramp = 0;
+  std::string stroke{};
 };
 constexpr auto parameter_table(const Calm*) {
-  return std::make_tuple(parameter("ramp", &Calm::ramp, 0, 1e12, "s", "Time in which the wind dies down."));
+  return std::make_tuple(parameter("ramp", &Calm::ramp, 0, 1e12, "s", "Time in which the wind dies down."),
+                         parameter("stroke", &Calm::stroke, "As of edit_terrain."));
 }
 static_assert(table_is_complete<Calm>());
 """),
@@ -321,15 +323,14 @@ static_assert(table_is_complete<Calm>());
            "  CommandResult operator()(const command::SetWind& command) const;\n",
            "  CommandResult operator()(const command::Calm& command) const;\n"),
     Insert("src/simulation/editing/commands.cpp",
-           "  regime.ramp = command.ramp;\n  state.set_wind_regime(regime);\n  return {};\n}\n", """\
+           "  regime.ramp = command.ramp;\n  return set_regime(regime, command);\n}\n", """\
 
 CommandResult Commands::Execution::operator()(const command::Calm& command) const {
   check_ranges(command, "calm");
   WindRegime regime;
   regime.speed = 0;
   regime.ramp = command.ramp;
-  state.set_wind_regime(regime);
-  return {};
+  return set_regime(regime, command);
 }
 """),
     Insert("doc/robotics/ros_interface.md",

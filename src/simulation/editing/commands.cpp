@@ -39,6 +39,15 @@ struct Commands::Execution {
   CommandResult operator()(const command::Redo& command) const {
     return turned(history.redo(command.stroke, with_change));
   }
+  /// Lets a regime begin, which undo can take back.
+  template <class Command>
+  CommandResult set_regime(const WindRegime& regime, const Command& command) const {
+    check_stroke_name(command.stroke, command.name);
+    const EditHistory::Settings before = history.settings(SettingScope::wind);
+    state.set_wind_regime(regime);
+    history.paint(command.stroke, before);
+    return {};
+  }
   CommandResult turned(CommandResult result) const {
     if (!result.returned.settings.empty()) commands.read_timeline();
     return result;
@@ -148,15 +157,11 @@ void Commands::set_parameters(const std::vector<std::string>& settings) {
 
 CommandResult Commands::Execution::operator()(const command::SetWind& command) const {
   check_ranges(command, "set_wind");
-  check_stroke_name(command.stroke, command.name);
-  const EditHistory::Settings before = history.settings(SettingScope::wind);
   WindRegime regime;
   regime.direction_deg = command.direction_deg;
   regime.speed = command.speed;
   regime.ramp = command.ramp;
-  state.set_wind_regime(regime);
-  history.paint(command.stroke, before);
-  return {};
+  return set_regime(regime, command);
 }
 
 void check_wind_schedule(const WindRegime& r, const std::string& what) {
@@ -172,11 +177,7 @@ void check_wind_schedule(const WindRegime& r, const std::string& what) {
 
 CommandResult Commands::Execution::operator()(const command::SetWindSchedule& command) const {
   check_wind_schedule(command.regime, command.name);
-  check_stroke_name(command.stroke, command.name);
-  const EditHistory::Settings before = history.settings(SettingScope::wind);
-  state.set_wind_regime(command.regime);
-  history.paint(command.stroke, before);
-  return {};
+  return set_regime(command.regime, command);
 }
 
 void check_wind_feature(const WindFeature& feature) {
