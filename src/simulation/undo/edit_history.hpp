@@ -70,7 +70,8 @@ class EditHistory {
   CommandResult turn(Stroke& stroke, bool with_change);
   Stroke& stroke_to_paint(const std::string& name);
   void prepare(const Stroke& stroke);
-  void require_species(const Stroke& stroke) const;
+  void require_possible(const Stroke& stroke, const Scenario& scenario) const;
+  void require_species(const Stroke& stroke, const Scenario& scenario) const;
   bool is_used(Layer layer) const;
   bool tell(const Stroke& stroke, const MaterialReturns& moved, CommandResult& result) const;
   void release_layers();

@@ -58,15 +58,22 @@ std::vector<int> cells_of(const PaintedLayer& painted) {
 
 }  // namespace
 
-/// Brings the memory into use that the stroke needs. Throws ConfigError, and has changed nothing, if there is
-/// none, or if the terrain does not have what the stroke painted any more.
-void EditHistory::prepare(const Stroke& stroke) {
+/// Throws ConfigError if the terrain would not have what the stroke changes. `scenario`: under which its
+/// plants are to live.
+void EditHistory::require_possible(const Stroke& stroke, const Scenario& scenario) const {
   const std::string what = verb_of(stroke);
   for (const MaterialChange& change : stroke.materials)
-    if (!state_.terrain.has(change.layer))
+    if (!state_.terrain.has(change.layer) &&
+        std::count(stroke.new_layers.begin(), stroke.new_layers.end(), change.layer) == 0)
       throw ConfigError(
           what + ": " + info(change.layer).name +
           ": is not in use here any more (allowed: after the redo of what brought it into use)");
+  require_species(stroke, scenario);
+}
+
+/// Brings the memory into use that the stroke needs. Throws ConfigError, and has changed nothing, if there is
+/// none.
+void EditHistory::prepare(const Stroke& stroke) {
   loose_.begin();
   for (const PaintedLayer& painted : stroke.painted) {
     if (state_.terrain.has(painted.layer)) continue;
@@ -86,19 +93,20 @@ void EditHistory::prepare(const Stroke& stroke) {
   state_.flags = flags;
 }
 
-/// Its plants can be what they were: there are their species.
-void EditHistory::require_species(const Stroke& stroke) const {
-  if (stroke.plants.empty()) return;
+/// The plants that come back can be what they were: there are their species.
+void EditHistory::require_species(const Stroke& stroke, const Scenario& scenario) const {
+  if (stroke.plants.removed.empty()) return;
   const std::string what = verb_of(stroke);
-  if (!state_.plants) throw ConfigError(what + ": plants: none live here any more (vegetation.enabled)");
-  const std::vector<Species>& present = state_.scenario.species;
-  for (const auto* list : {&stroke.plants.added, &stroke.plants.removed})
-    for (const ChangedPlant& plant : *list) {
-      const std::size_t kind = plant.words[static_cast<std::size_t>(plants::Column::species)];
-      if (kind >= present.size() || present[kind].name != stroke.species[kind])
-        throw ConfigError(what + ": species." + std::to_string(kind) + ": is not " +
-                          desert_sim::in_quotes(stroke.species[kind]) + " any more, of which plants are");
-    }
+  if (!scenario.get<VegetationParameters>().enabled)
+    throw ConfigError(
+        what + ": vegetation.enabled: plants would come back (allowed: after the edit that cleared them)");
+  const std::vector<Species>& present = scenario.species;
+  for (const ChangedPlant& plant : stroke.plants.removed) {
+    const std::size_t kind = plant.words[static_cast<std::size_t>(plants::Column::species)];
+    if (kind >= present.size() || present[kind].name != stroke.species[kind])
+      throw ConfigError(what + ": species." + std::to_string(kind) + ": is not " +
+                        desert_sim::in_quotes(stroke.species[kind]) + " any more, of which plants are");
+  }
 }
 
 /// A terrain that did not have a painted layer before its strokes does not have it when all are undone.
@@ -143,25 +151,35 @@ CommandResult EditHistory::turn(Stroke& stroke, bool with_change) {
                         stroke.settings.empty() ? SettingTexts() : settings_of(state_, SettingScope::all));
   CommandResult result;
   // Whatever can be refused, or needs memory, comes first, so that nothing is half done.
-  std::optional<SettingsReturn> set;
+  std::optional<SettingsReturn> returned;
+  if (!settings.changes().empty())
+    returned.emplace(state_, pipeline_, settings.changes(), check_,
+                     redo ? std::vector<int>() : population_.leaving(stroke.plants), verb_of(stroke));
+  // Plants come back after settings are redone, and before they are undone.
+  const Scenario& of_plants = redo && returned ? returned->scenario() : state_.scenario;
+  if (!stroke.plants.empty() && !of_plants.get<VegetationParameters>().enabled)
+    throw ConfigError(std::string(verb_of(stroke)) +
+                      ": plants: none live here any more (vegetation.enabled)");
+  require_possible(stroke, of_plants);
+  if (returned) require_possible(stroke, returned->scenario());
+  bool settings_set = false;
   std::optional<MaterialTurn> materials;
   std::vector<CellList> painted;
   bool plants_turned = false;
   const auto turn_plants = [&] {
-    require_species(stroke);
     result.returned.missing_plants = population_.turn_back(stroke.plants);
     plants_turned = true;
   };
   try {
     if (!redo) turn_plants();  // plants are there only while their species are
-    if (!settings.changes().empty())
-      set.emplace(state_, pipeline_, settings.changes(), check_, verb_of(stroke));
+    if (returned) returned->set();
+    settings_set = true;
     prepare(stroke);
     materials.emplace(stroke.materials, state_);
     for (const PaintedLayer& layer : stroke.painted) painted.emplace_back(state_.exec(), cells_of(layer));
     if (redo) turn_plants();
   } catch (...) {
-    if (set) set->roll_back();
+    if (returned && settings_set) returned->roll_back();
     if (plants_turned) population_.turn_back(stroke.plants);
     release_layers();
     throw;

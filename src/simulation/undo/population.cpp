@@ -101,6 +101,14 @@ long long Population::turn_back(PlantChange& change) {
   return missing;
 }
 
+std::vector<int> Population::leaving(const PlantChange& change) {
+  if (change.added.empty()) return {};
+  begin();
+  std::vector<int> counts(state_.scenario.species.size(), 0);
+  for (const ChangedPlant& plant : find(change.added).plants) ++counts.at(word(plant.words, Column::species));
+  return counts;
+}
+
 /// Those of `wanted` that are still there: by rank, or, if a step was made since, by place and species.
 Population::Found Population::find(const std::vector<ChangedPlant>& wanted) const {
   std::unordered_map<std::uint64_t, const ChangedPlant*> current;

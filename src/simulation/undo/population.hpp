@@ -38,6 +38,9 @@ class Population {
   /// `change` becomes what was changed now. Returns how many plants were missing.
   long long turn_back(PlantChange& change);
 
+  /// How many plants of each species turn_back() would take away.
+  std::vector<int> leaving(const PlantChange& change);
+
   /// Adds what paint() told to what a stroke has changed. Plants that the stroke itself had put, and has
   /// cleared now, have passed.
   void merge(PlantChange& stroke, PlantChange change) const;

@@ -185,43 +185,48 @@ void change_ramp(const std::string& path, const std::optional<std::string>& text
 }
 
 /// Plants refer to their species by its place.
-void require_plants_kept(const SimulationState& state, const Scenario& wanted, const std::string& what) {
-  if (state.plants.count > 0 && !wanted.get<VegetationParameters>().enabled)
-    throw ConfigError(what + ": vegetation.enabled: " + std::to_string(state.plants.count) +
-                      " plants live (allowed: none; edit_plants can clear them)");
-  const std::vector<PlantCount> counts =
-      state.plants.count > 0 ? state.plant_counts() : std::vector<PlantCount>();
-  for (std::size_t n = 0; n < counts.size(); ++n)
-    if (counts[n].plants > 0 && (n >= wanted.species.size() || wanted.species[n].name != counts[n].species))
-      throw ConfigError(what + ": species." + std::to_string(n) + ": " + std::to_string(counts[n].plants) +
-                        " plants of " + in_quotes(counts[n].species) +
-                        " live, which would have no species (allowed: none; edit_plants can clear them)");
+void require_plants_kept(const SimulationState& state, const Scenario& wanted,
+                         const std::vector<int>& leaving, const std::string& what) {
+  if (state.plants.count == 0) return;
+  const std::vector<PlantCount> counts = state.plant_counts();
+  for (std::size_t n = 0; n < counts.size(); ++n) {
+    const int staying = counts[n].plants - (n < leaving.size() ? leaving[n] : 0);
+    if (staying == 0) continue;
+    const std::string plants =
+        std::to_string(staying) + " plants of " + in_quotes(counts[n].species) + " live";
+    if (!wanted.get<VegetationParameters>().enabled)
+      throw ConfigError(what + ": vegetation.enabled: " + plants +
+                        " (allowed: none; edit_plants can clear them)");
+    if (n >= wanted.species.size() || wanted.species[n].name != counts[n].species)
+      throw ConfigError(what + ": species." + std::to_string(n) + ": " + plants +
+                        ", which would have no species (allowed: none; edit_plants can clear them)");
+  }
 }
 
 }  // namespace
 
 SettingsReturn::SettingsReturn(SimulationState& state, Pipeline& pipeline, const SettingChanges& changes,
-                               const ScenarioCheck& check, const std::string& what)
+                               const ScenarioCheck& check, const std::vector<int>& leaving,
+                               const std::string& what)
     : state_(state),
       pipeline_(pipeline),
-      before_{state.scenario, state.wind_regime, state.ramps, state.clock_origin, state.held_layers_known} {
-  Present wanted = before_;
+      before_{state.scenario, state.wind_regime, state.ramps, state.clock_origin, state.held_layers_known},
+      wanted_(before_) {
   SettingChanges parameters;
-  std::optional<ClockOrigin> clock;
   for (const auto& [key, text] : changes) {
     if (key == wind_key) {
-      wanted.wind = read_regime(YAML::Load(*text), wind_key);
-      wanted.wind.series = state.scenario.wind_series;
+      wanted_.wind = read_regime(YAML::Load(*text), wind_key);
+      wanted_.wind.series = state.scenario.wind_series;
     } else if (key == scenario_wind_key) {
       const WindRegime regime = read_regime(YAML::Load(*text), scenario_wind_key);
-      wanted.scenario.wind_regime = regime;
-      wanted.scenario.wind_segments = regime.segments;
+      wanted_.scenario.wind_regime = regime;
+      wanted_.scenario.wind_segments = regime.segments;
     } else if (begins_with(key, ramp_key)) {
-      change_ramp(key.substr(std::string(ramp_key).size()), text, wanted.ramps);
+      change_ramp(key.substr(std::string(ramp_key).size()), text, wanted_.ramps);
     } else if (key == clock_key) {
       const YAML::Node node = YAML::Load(*text);
       if (node["steps"].as<std::uint64_t>() != state.steps) continue;
-      clock =
+      clock_ =
           read<ClockOrigin>(*text, [](const YAML::Node& whole, ValidationErrors& errors, ClockOrigin& at) {
             yaml::read_section(whole["origin"], "clock", errors, at);
           });
@@ -229,16 +234,19 @@ SettingsReturn::SettingsReturn(SimulationState& state, Pipeline& pipeline, const
       parameters[key] = text;
     }
   }
-  change_features(changes, wanted.scenario.wind_features);
-  if (!parameters.empty()) wanted.scenario = with_parameter_texts(wanted.scenario, parameters, what);
+  change_features(changes, wanted_.scenario.wind_features);
+  if (!parameters.empty()) wanted_.scenario = with_parameter_texts(wanted_.scenario, parameters, what);
   const auto is_regime = [](const auto& change) { return change.first == wind_key; };
   other_scenario_ = !std::all_of(changes.begin(), changes.end(), is_regime);
   if (other_scenario_) {
-    require_plants_kept(state, wanted.scenario, what);
-    check(wanted.scenario, what);
+    require_plants_kept(state, wanted_.scenario, leaving, what);
+    check(wanted_.scenario, what);
   }
-  set(wanted);
-  if (clock) state_.clock_origin = *clock;
+}
+
+void SettingsReturn::set() {
+  set(wanted_);
+  if (clock_) state_.clock_origin = *clock_;
 }
 
 void SettingsReturn::set(const Present& wanted) {

@@ -41,10 +41,14 @@ using ScenarioCheck = std::function<void(const Scenario& wanted, const std::stri
 /// Sets settings, in the name of an undo or redo.
 class SettingsReturn {
  public:
-  /// Throws ConfigError, and has changed nothing, if the check refuses, if plants are of a species that would
-  /// go, or if memory runs out.
+  /// Throws ConfigError if the check refuses, or if plants are of a species that would go; `leaving`: how
+  /// many of each species go before the settings do.
   SettingsReturn(SimulationState& state, Pipeline& pipeline, const SettingChanges& changes,
-                 const ScenarioCheck& check, const std::string& what);
+                 const ScenarioCheck& check, const std::vector<int>& leaving, const std::string& what);
+  /// The scenario that there will be.
+  const Scenario& scenario() const { return wanted_.scenario; }
+  /// Throws ConfigError, and has changed nothing, if memory runs out.
+  void set();
   /// Sets all as it was before.
   void roll_back();
 
@@ -61,7 +65,9 @@ class SettingsReturn {
   SimulationState& state_;
   Pipeline& pipeline_;
   const Present before_;
-  bool other_scenario_ = false;  ///< not only another regime
+  Present wanted_;
+  std::optional<ClockOrigin> clock_;  ///< while no step was made since it showed
+  bool other_scenario_ = false;       ///< not only another regime
 };
 
 }  // namespace desert_sim

@@ -370,6 +370,36 @@ TEST_P(UndoOfSettingsIn, AStrokeOfSettingsAndEditsIsOne) {
   test::expect_sound(s.simulation(), "goes on");
 }
 
+/// Plants that died, and then the life of plants taken back: nothing is left to be turned.
+TEST_P(UndoOfSettingsIn, PlantsAreNotTurnedWhereNoneLive) {
+  const char* const bare =
+      "grid: {width: 32, height: 24}\nterrain: [uniform: {layer: sand, value: 1}]\nspecies: [{preset: "
+      "palm}]\n";
+  Session s(test::scenario_of(bare), no_raster_loader, GetParam(), 1);
+  s.apply(set({"vegetation.enabled=true"}, 0, "life"));
+  command::EditPlants plant;
+  plant.species = "palm";
+  plant.x = plant.y = 12;
+  plant.radius = 5;
+  plant.density = 1;
+  plant.stroke = "grove";
+  s.apply(plant);
+  EXPECT_THAT(refusal(s, command::Undo{"life"}), HasSubstr("vegetation.enabled: "));
+  plant.operation = PlantEdit::clear;
+  plant.radius = 40;
+  plant.stroke = "fire";
+  s.apply(plant);
+  ASSERT_EQ(s.simulation().state().plants.count, 0);
+  s.apply(command::Undo{"life"});
+  EXPECT_THAT(refusal(s, command::Undo{"grove"}), HasSubstr("undo: plants: none live here any more"));
+  EXPECT_THAT(refusal(s, command::Undo{"fire"}), HasSubstr("undo: plants: none live here any more"));
+  s.apply(command::Redo{"life"});
+  s.apply(command::Undo{"fire"});
+  EXPECT_GT(s.simulation().state().plants.count, 0);
+  s.apply(command::Undo{"grove"});
+  EXPECT_EQ(s.simulation().state().plants.count, 0);
+}
+
 TEST_P(UndoOfSettingsIn, WhatSettingsBroughtStaysWhereMaterialLies) {
   const char* const bare = "grid: {width: 16, height: 16}\nterrain: [uniform: {layer: sand, value: 1}]\n";
   Session s(test::scenario_of(bare), no_raster_loader, GetParam(), 1);
