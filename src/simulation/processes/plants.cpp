@@ -2,6 +2,7 @@
 #include "kernels/plants/cover.hpp"
 #include "kernels/plants/illumination.hpp"
 #include "kernels/plants/life.hpp"
+#include "kernels/slabs/slab_model.hpp"
 #include "src/core/number_text.hpp"
 #include "src/simulation/processes/processes.hpp"
 
@@ -37,8 +38,17 @@ void check_plants(const Scenario& s, ValidationErrors& errors) {
 
 const std::string section = register_section<VegetationParameters>("vegetation", check_plants);
 
+/// Where slabs or grains are moved, the process that moves them makes the wind, and comes after the plants:
+/// what they would find is the wind of the step before, or, after a checkpoint, none.
+void blow_before_sand_moves(StepContext& c) {
+  const SandModel model = c.scenario().get<SandParameters>().model;
+  if (is_saltation(model) || !has_sand_model(c.scenario(), model)) return;
+  with_backend(c.exec(), [&](auto& e) { slabs::blow(e, c.terrain, c.wind_above()); });
+}
+
 /// `makes_state`: also vegetation and humus, which a look at the terrain must leave alone.
 void cover_ground(StepContext& c, bool makes_state) {
+  blow_before_sand_moves(c);
   with_backend(c.exec(), [&](auto& e) {
     plants::cover(e, c.terrain, c.scenario().get<VegetationParameters>(),
                   {makes_state ? c.time_step() : 0.0f, c.fields.heights, makes_state}, c.dice(),
@@ -84,6 +94,7 @@ Process plant_cover_process() {
   p.reads_heights = true;
   p.reads = {Layer::bedrock, Layer::soil, Layer::sand, Layer::wind_x, Layer::wind_y};
   p.writes = {Layer::vegetation, Layer::humus, Layer::canopy_height};
+  p.writes_if_in_use = {Layer::wind_x, Layer::wind_y};
   p.step = [](StepContext& c, ProcessWorkspace*) { cover_ground(c, true); };
   p.refresh = [](StepContext& c, ProcessWorkspace*) { cover_ground(c, false); };
   return p;
