@@ -50,6 +50,7 @@ std::string text_of_wind(const WindRegime& regime) {
 /// `key` of each feature in turn. Those without an id (0), which only `clear` takes away, are counted.
 std::vector<std::string> feature_keys(const std::vector<WindFeature>& features) {
   std::vector<std::string> keys;
+  keys.reserve(features.size());
   int without_id = 0;
   for (const WindFeature& feature : features)
     keys.push_back(features_key +
@@ -122,6 +123,7 @@ std::vector<ChangedSetting> changed_settings(const SettingTexts& before, const S
       if (begins_with(key, ramp_key)) changed[key.substr(std::string(ramp_key).size())] = true;
     }
   std::vector<ChangedSetting> settings;
+  settings.reserve(changed.size());
   for (const auto& entry : changed)
     settings.push_back({entry.first, text_in(before, entry.first), text_in(after, entry.first), 0});
   return settings;
