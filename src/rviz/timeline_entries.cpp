@@ -8,6 +8,7 @@
 #include "src/core/number_text.hpp"
 #include "src/core/time_units.hpp"
 #include "src/scenario/timeline.hpp"
+#include "src/scenario/yaml_flow_text.hpp"
 
 namespace desert_sim {
 
@@ -32,7 +33,7 @@ double end_of(const YAML::Node& entry) {
 /// Long values, such as rasters, are cut.
 std::string short_text(const YAML::Node& value) {
   constexpr std::size_t longest = 60;
-  const std::string text = flow_text(value);
+  const std::string text = yaml::flow_text(value);
   return text.size() > longest ? text.substr(0, longest) + " …" : text;
 }
 
@@ -63,21 +64,11 @@ std::string command_words(const YAML::Node& entry) {
 
 }  // namespace
 
-std::string flow_text(const YAML::Node& node) {
-  YAML::Emitter out;
-  out.SetMapFormat(YAML::Flow);
-  out.SetSeqFormat(YAML::Flow);
-  out << node;
-  std::string text = out.c_str();
-  std::replace(text.begin(), text.end(), '\n', ' ');
-  return text;
-}
-
 TimelineEntries timeline_entries(const std::string& scenario) {
   TimelineEntries entries;
   const YAML::Node run = YAML::Load(scenario)["run"];
   if (run && run["timeline"])
-    for (const YAML::Node& entry : run["timeline"]) entries.push_back(flow_text(entry));
+    for (const YAML::Node& entry : run["timeline"]) entries.push_back(yaml::flow_text(entry));
   return entries;
 }
 

@@ -6,16 +6,9 @@
 #include <utility>
 #include <vector>
 
-namespace YAML {
-class Node;
-}
-
 namespace desert_sim {
 
 using TimelineEntries = std::vector<std::string>;
-
-/// In one line.
-std::string flow_text(const YAML::Node& node);
 
 /// The entries of a scenario that ~get_scenario tells.
 TimelineEntries timeline_entries(const std::string& scenario);

@@ -15,6 +15,7 @@
 #include "src/rviz/command_keys.hpp"
 #include "src/rviz/fields.hpp"
 #include "src/rviz/timeline_entries.hpp"
+#include "src/scenario/yaml_flow_text.hpp"
 
 namespace desert_sim {
 
@@ -225,10 +226,10 @@ void TimelineEntryForm::show_entry(const std::string& text) {
     fields_.clear();
     for (const auto& setting : entry["set"])
       add_parameter(QString::fromStdString(setting.first.Scalar()),
-                    QString::fromStdString(flow_text(setting.second)));
+                    QString::fromStdString(yaml::flow_text(setting.second)));
   } else {
     for (const auto& part : entry) {
-      const std::string key = part.first.Scalar(), value = flow_text(part.second);
+      const std::string key = part.first.Scalar(), value = yaml::flow_text(part.second);
       if (is_time_key(key) || key == "command") continue;
       if (value.size() > longest_shown) {
         kept_[key] = value;

@@ -11,22 +11,13 @@
 #include "src/core/quoted.hpp"
 #include "src/core/time_units.hpp"
 #include "src/scenario/live_parameters.hpp"
+#include "src/scenario/yaml_flow_text.hpp"
 #include "src/scenario/yaml_parameters.hpp"
 #include "src/scenario/yaml_text.hpp"
 
 namespace desert_sim {
 
 namespace {
-
-std::string flow_text(const YAML::Node& node) {
-  YAML::Emitter out;
-  out.SetMapFormat(YAML::Flow);
-  out.SetSeqFormat(YAML::Flow);
-  out << node;
-  std::string text = out.c_str();
-  std::replace(text.begin(), text.end(), '\n', ' ');
-  return text;
-}
 
 double read_time(const YAML::Node& node, const std::string& key, ValidationErrors& errors) {
   double value = 0;
@@ -56,7 +47,7 @@ std::string command_text(const YAML::Node& entry, const std::string& path, Valid
     if (!seen.insert(key).second) errors.add(path + key, "is given twice");
     if (key != "time" && key != "every" && key != "until") command[key] = part.second;
   }
-  return flow_text(command);
+  return yaml::flow_text(command);
 }
 
 TimelineEntry read_entry(const YAML::Node& node, const std::string& key, ValidationErrors& errors) {
@@ -82,7 +73,7 @@ TimelineEntry read_entry(const YAML::Node& node, const std::string& key, Validat
     return entry;
   }
   for (const auto& setting : set)
-    entry.settings.push_back(setting.first.Scalar() + "=" + flow_text(setting.second));
+    entry.settings.push_back(setting.first.Scalar() + "=" + yaml::flow_text(setting.second));
   return entry;
 }
 

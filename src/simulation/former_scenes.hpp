@@ -18,7 +18,6 @@ class FormerScenes {
 
   /// What all scenes together may take [bytes]. The oldest are forgotten first.
   explicit FormerScenes(std::size_t memory) : memory_(memory) {}
-  std::size_t memory() const { return memory_; }
 
   int undoable() const { return static_cast<int>(former_.size()); }
   int redoable() const { return static_cast<int>(later_.size()); }

@@ -16,7 +16,7 @@ bool Session::can_keep_scene() const {
   for (const LayerInfo& row : layer_table)
     if (s.is_part(row.layer))
       bytes += static_cast<std::size_t>(s.terrain.grid().cells()) * sizeof(std::uint32_t);
-  return !undo_edits_alone_ && bytes < scenes_.memory();
+  return !undo_edits_alone_ && bytes < undo_memory_;
 }
 
 FormerScenes::Scene Session::present_scene() const { return {checkpoint_bytes(*simulation_), start_folder_}; }

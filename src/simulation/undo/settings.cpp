@@ -3,6 +3,7 @@
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
+#include <set>
 
 #include "src/core/error.hpp"
 #include "src/core/quoted.hpp"
@@ -114,18 +115,18 @@ std::vector<ChangedSetting> changed_settings(const SettingTexts& before, const S
     const auto at = texts.find(key);
     return at == texts.end() ? std::optional<std::string>() : at->second;
   };
-  std::map<std::string, bool> changed;  // by key
+  std::set<std::string> changed;
   for (const SettingTexts* texts : {&before, &after})
     for (const auto& entry : *texts) {
       const std::string& key = entry.first;
       if (text_in(before, key) == text_in(after, key)) continue;
-      changed[key] = true;
-      if (begins_with(key, ramp_key)) changed[key.substr(std::string(ramp_key).size())] = true;
+      changed.insert(key);
+      if (begins_with(key, ramp_key)) changed.insert(key.substr(std::string(ramp_key).size()));
     }
   std::vector<ChangedSetting> settings;
   settings.reserve(changed.size());
-  for (const auto& entry : changed)
-    settings.push_back({entry.first, text_in(before, entry.first), text_in(after, entry.first), 0});
+  for (const std::string& key : changed)
+    settings.push_back({key, text_in(before, key), text_in(after, key), 0});
   return settings;
 }
 

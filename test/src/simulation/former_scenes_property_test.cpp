@@ -2,45 +2,24 @@
 
 #include <gmock/gmock.h>
 
-#include "src/simulation/checkpoint.hpp"
-#include "src/simulation/session.hpp"
 #include "test/support/edits.hpp"
-#include "test/support/strokes.hpp"
-#include "test/support/temporary_folder.hpp"
+#include "test/support/session_fixture.hpp"
 
 namespace desert_sim {
 namespace {
 
 using ::testing::HasSubstr;
 
-class FormerScenesOf : public test::OnBackend {
+class FormerScenesOf : public test::OnSession {
  protected:
-  std::unique_ptr<Session> session(const std::string& journal = "",
-                                   std::size_t memory = default_undo_memory) {
-    return std::make_unique<Session>(test::scenario_of(test::undo_world("garden")), no_raster_loader,
-                                     GetParam(), 1, journal, memory);
+  std::unique_ptr<Session> garden(const std::string& journal = "", std::size_t memory = default_undo_memory) {
+    return session("garden", journal, memory);
   }
-  static void steps(Session& s, int n) {
-    for (; n > 0; --n) s.step();
-  }
-  static std::string bytes(Session& s) { return checkpoint_bytes(s.simulation()); }
   static command::LoadScenario text(const std::string& yaml) {
     command::LoadScenario load;
     load.path = "new.yaml";
     load.yaml = yaml;
     return load;
-  }
-  static std::string refusal(Session& s, const Command& command) {
-    const std::string before = bytes(s);
-    std::string reason;
-    try {
-      s.apply(command);
-      ADD_FAILURE() << "was accepted";
-    } catch (const ConfigError& e) {
-      reason = e.what();
-    }
-    EXPECT_TRUE(bytes(s) == before);
-    return reason;
   }
   static command::EditTerrain dab(const std::string& stroke) {
     command::EditTerrain edit;
@@ -50,8 +29,6 @@ class FormerScenesOf : public test::OnBackend {
     edit.stroke = stroke;
     return edit;
   }
-
-  test::TemporaryFolder folder_;
 };
 
 TEST_P(FormerScenesOf, EveryResetAndLoadComesBackWithAllOfItsState) {
@@ -59,7 +36,7 @@ TEST_P(FormerScenesOf, EveryResetAndLoadComesBackWithAllOfItsState) {
   std::string end;
   std::vector<std::string> states;
   {
-    auto s = session(journal);
+    auto s = garden(journal);
     const auto next = [&](const Command& command) {
       steps(*s, 3);
       s->apply(command::SetWind{40, 8, 2});
@@ -97,7 +74,7 @@ TEST_P(FormerScenesOf, EveryResetAndLoadComesBackWithAllOfItsState) {
     steps(*s, 2);
     end = bytes(*s);
   }
-  auto replay = session();
+  auto replay = garden();
   const Journal read = read_journal(journal);
   for (const Journal::Entry& entry : read.entries) {
     while (replay->ticks() < entry.tick) replay->step();
@@ -108,7 +85,7 @@ TEST_P(FormerScenesOf, EveryResetAndLoadComesBackWithAllOfItsState) {
 }
 
 TEST_P(FormerScenesOf, StrokesAreUndoneBeforeTheLoadThatTheyCameAfter) {
-  auto s = session();
+  auto s = garden();
   s->apply(dab("before"));
   const std::string before = bytes(*s);
   s->apply(command::Reset{});
@@ -129,7 +106,7 @@ TEST_P(FormerScenesOf, StrokesAreUndoneBeforeTheLoadThatTheyCameAfter) {
 }
 
 TEST_P(FormerScenesOf, AResetThatChangesNothingIsNothingToUndo) {
-  auto s = session();
+  auto s = garden();
   s->apply(command::Reset{});
   EXPECT_EQ(s->undoable(), 0);
   s->apply(command::SetWind{9, 9, 0});
@@ -138,17 +115,17 @@ TEST_P(FormerScenesOf, AResetThatChangesNothingIsNothingToUndo) {
 }
 
 TEST_P(FormerScenesOf, MemoryIsBoundedAndTheOldestGoFirst) {
-  const std::size_t scene = bytes(*session()).size();
-  auto s = session("", 3 * scene - 1);
+  const std::size_t scene = bytes(*garden()).size();
+  auto s = garden("", 3 * scene - 1);
   for (int n = 0; n < 5; ++n) {
     s->apply(dab(std::to_string(n)));
     s->apply(command::Reset{});
   }
   EXPECT_EQ(s->undoable(), 2);
-  auto small = session("", 5000);
+  auto small = garden("", 5000);
   small->apply(command::Reset{});
   EXPECT_EQ(small->undoable(), 0) << "the terrain is too large";
-  auto none = session("", 0);
+  auto none = garden("", 0);
   none->apply(command::Reset{});
   EXPECT_EQ(none->undoable(), 0);
 }

@@ -3,24 +3,11 @@
 #include <algorithm>
 #include <numeric>
 
-#include "src/simulation/checkpoint.hpp"
-#include "src/simulation/session.hpp"
 #include "test/support/edits.hpp"
-#include "test/support/strokes.hpp"
-#include "test/support/temporary_folder.hpp"
+#include "test/support/session_fixture.hpp"
 
 namespace desert_sim {
 namespace {
-
-/// Whether the command was accepted.
-bool accepted(Session& session, const Command& command) {
-  try {
-    session.apply(command);
-    return true;
-  } catch (const ConfigError&) {
-    return false;
-  }
-}
 
 bool is_complete(const CommandResult& result) {
   const auto& materials = result.returned.materials;
@@ -29,20 +16,7 @@ bool is_complete(const CommandResult& result) {
                      [](const auto& m) { return !m || m->missing_m3 == 0; });
 }
 
-class UndoIn : public test::OnBackend {
- protected:
-  std::unique_ptr<Session> session(const std::string& world, const std::string& journal = "",
-                                   std::size_t memory = default_undo_memory) {
-    return std::make_unique<Session>(test::scenario_of(test::undo_world(world)), no_raster_loader, GetParam(),
-                                     1, journal, memory);
-  }
-  static void steps(Session& s, int n) {
-    for (; n > 0; --n) s.step();
-  }
-  static std::string bytes(Session& s) { return checkpoint_bytes(s.simulation()); }
-
-  test::TemporaryFolder folder_;
-};
+using UndoIn = test::OnSession;
 
 TEST_P(UndoIn, TheOrderOfEditsBringsEveryStateBack) {
   for (const char* world : test::undo_worlds) {
@@ -209,18 +183,6 @@ TEST_P(UndoIn, CallsOfOneNameAreOneStrokeUntilItIsUndone) {
   while (accepted(*s, command::Undo{})) {
   }
   EXPECT_EQ(s->simulation().state().hash(), start);
-}
-
-std::string refusal(Session& s, const Command& command) {
-  const std::uint64_t before = s.simulation().state().hash();
-  try {
-    s.apply(command);
-    ADD_FAILURE() << "was accepted";
-  } catch (const ConfigError& e) {
-    EXPECT_EQ(s.simulation().state().hash(), before);
-    return e.what();
-  }
-  return "";
 }
 
 TEST_P(UndoIn, WhatIsNotThereIsRefused) {

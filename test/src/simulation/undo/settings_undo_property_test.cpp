@@ -3,13 +3,10 @@
 
 #include <gmock/gmock.h>
 
-#include "src/simulation/checkpoint.hpp"
-#include "src/simulation/session.hpp"
 #include "test/support/edits.hpp"
 #include "test/support/random_commands.hpp"
+#include "test/support/session_fixture.hpp"
 #include "test/support/settings.hpp"
-#include "test/support/strokes.hpp"
-#include "test/support/temporary_folder.hpp"
 
 namespace desert_sim {
 namespace {
@@ -27,44 +24,13 @@ std::string difference(const std::string& a, const std::string& b) {
   return "byte " + std::to_string(from) + ":\n" + a.substr(begin, 400) + "\n---\n" + b.substr(begin, 400);
 }
 
-class UndoOfSettingsIn : public test::OnBackend {
+class UndoOfSettingsIn : public test::OnSession {
  protected:
-  std::unique_ptr<Session> session(const std::string& world, const std::string& journal = "",
-                                   std::size_t memory = default_undo_memory) {
-    return std::make_unique<Session>(test::scenario_of(test::undo_world(world)), no_raster_loader, GetParam(),
-                                     1, journal, memory);
-  }
-  static void steps(Session& s, int n) {
-    for (; n > 0; --n) s.step();
-  }
-  static std::string bytes(Session& s) { return checkpoint_bytes(s.simulation()); }
-  static bool accepted(Session& s, const Command& command) {
-    try {
-      s.apply(command);
-      return true;
-    } catch (const ConfigError&) {
-      return false;
-    }
-  }
-  static std::string refusal(Session& s, const Command& command) {
-    const std::string before = bytes(s);
-    std::string reason;
-    try {
-      s.apply(command);
-      ADD_FAILURE() << "was accepted";
-    } catch (const ConfigError& e) {
-      reason = e.what();
-    }
-    EXPECT_TRUE(bytes(s) == before) << "a refusal has changed something: " << reason;
-    return reason;
-  }
   static float lift(Session& s) { return s.simulation().scenario().get<SaltationParameters>().lift; }
   static command::SetParameters set(std::vector<std::string> settings, double ramp = 0,
                                     const std::string& stroke = "") {
     return {std::move(settings), ramp, stroke};
   }
-
-  test::TemporaryFolder folder_;
 };
 
 TEST_P(UndoOfSettingsIn, TheOrderOfCommandsBringsEveryStateBack) {
