@@ -96,8 +96,8 @@ void EditHistory::paint(const std::string& name, const Population::Edit& plants)
   const std::size_t before = stroke.bytes();
   stroke.last_action = ++actions_;
   population_.merge(stroke.plants, std::move(change));
-  if (stroke.species.empty())
-    for (const Species& species : state_.scenario.species) stroke.species.push_back(species.name);
+  stroke.species.clear();  // there may be more of them than at the edits before
+  for (const Species& species : state_.scenario.species) stroke.species.push_back(species.name);
   recount(stroke, before);
   keep_to_memory();
 }

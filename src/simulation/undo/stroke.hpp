@@ -89,7 +89,7 @@ struct Stroke {
   std::vector<MaterialChange> materials;
   std::vector<PaintedLayer> painted;
   PlantChange plants;
-  std::vector<std::string> species;  ///< of the scenario when plants were painted, which they refer to
+  std::vector<std::string> species;  ///< of the scenario when plants were painted last
   LooseMark loose;
   std::vector<ChangedSetting> settings;
   std::vector<Layer> new_layers;  ///< that settings have brought into use

@@ -294,6 +294,32 @@ TEST_P(UndoOfSettingsIn, PlantsThatLiveKeepTheirSpecies) {
   EXPECT_GT(s->simulation().state().plant_counts().at(2).plants, 0);
 }
 
+/// A stroke knows the species that came while it was painted.
+TEST_P(UndoOfSettingsIn, AStrokeMayPlantSpeciesThatItDidNotBeginWith) {
+  auto s = session("garden");
+  command::EditPlants plant;
+  plant.species = "bush";
+  plant.x = plant.y = 20;
+  plant.radius = 5;
+  plant.density = 0.5;
+  plant.stroke = "grove";
+  const std::string start = bytes(*s);
+  s->apply(plant);
+  s->apply(set({"species.2={preset: palm}"}, 0, "palms"));
+  plant.species = "palm";
+  plant.seed = 7;
+  s->apply(plant);
+  ASSERT_GT(s->simulation().state().plant_counts().at(2).plants, 0);
+  const std::string grown = bytes(*s);
+  s->apply(command::Undo{"grove"});
+  s->apply(command::Redo{"grove"});
+  EXPECT_TRUE(bytes(*s) == grown);
+  s->apply(command::Undo{"grove"});
+  s->apply(command::Undo{"palms"});
+  EXPECT_TRUE(bytes(*s) == start);
+  EXPECT_THAT(refusal(*s, command::Redo{"grove"}), HasSubstr("redo: species.2: is not 'palm' any more"));
+}
+
 /// One stroke that lets plants live, paints soil and plants: it comes and goes whole.
 TEST_P(UndoOfSettingsIn, AStrokeOfSettingsAndEditsIsOne) {
   const char* const bare =
