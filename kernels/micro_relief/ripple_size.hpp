@@ -25,6 +25,7 @@
 #include "kernels/base/math.hpp"
 #include "kernels/micro_relief/micro_relief_parameters.hpp"
 #include "kernels/wind/vector.hpp"
+#include "src/core/elementary.hpp"
 
 namespace desert_sim {
 
@@ -73,16 +74,16 @@ struct RippleWind {
 
   /// After this wind has blown for ever.
   static RippleWind settled(wind::Vector wind) {
-    return {wind.x, wind.y, std::hypot(double{wind.x}, double{wind.y}), 0};
+    return {wind.x, wind.y, elementary::hypot(wind.x, wind.y), 0};
   }
   /// `wind` [m/s] blows for `time` [s]; exact for w̄ and ū, which decay exponentially.
   void advance(wind::Vector wind, double time, const MicroReliefParameters& p) {
     const micro_relief::RippleSize size(p);
-    const double kept = std::exp(-time / double{p.response_time}), before = speed;
+    const double kept = elementary::exp(-time / double{p.response_time}), before = speed;
     const auto approach = [kept](double from, double to) { return to + (from - to) * kept; };
     x = approach(x, wind.x);
     y = approach(y, wind.y);
-    speed = approach(speed, std::hypot(double{wind.x}, double{wind.y}));
+    speed = approach(speed, elementary::hypot(wind.x, wind.y));
     const double rate = 0.5 * (double{size.frequency(static_cast<float>(before))} +
                                size.frequency(static_cast<float>(speed)));
     passed += time * rate;

@@ -6,7 +6,7 @@
 
 #include "kernels/backend/loops.hpp"
 #include "kernels/particles/wang_laws.hpp"
-#include "src/core/constants.hpp"
+#include "src/core/elementary.hpp"
 
 namespace desert_sim::particles {
 
@@ -23,12 +23,12 @@ void find_shelter(E& exec, const TerrainView& t, const StepInputs& in, const Dow
                 MeasureSurface{order, t.quanta(Layer::bedrock), t.quanta(Layer::soil), t.quanta(Layer::sand),
                                work.columns.data()});
   const float shift = order.shift(in.above.x, in.above.y);
-  const double way = std::hypot(1.0, static_cast<double>(shift)) * static_cast<double>(t.grid.cell_size);
+  const double way = elementary::hypot(1, shift) * static_cast<double>(t.grid.cell_size);
   const double fall =
-      std::tan(in.particle.shelter_deg * pi / 180.0) * way * static_cast<double>(t.quanta_per_metre);
+      elementary::tan_deg(in.particle.shelter_deg) * way * static_cast<double>(t.quanta_per_metre);
   const auto whole_fall =
       static_cast<Quanta>(std::lround(std::clamp(fall, 1.0, static_cast<double>(wall_height))));
-  const double renewal = -std::expm1(-way / static_cast<double>(in.particle.upwind_length));
+  const double renewal = -elementary::expm1(-way / static_cast<double>(in.particle.upwind_length));
   const FindShelter find{order, to_fixed_point(shift), whole_fall, static_cast<float>(renewal),
                          work.columns.data()};
   for_each_line_in_turn(exec, order.periodic_along() ? -order.lines() : 0, order.lines(), order.length(),

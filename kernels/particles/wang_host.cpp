@@ -6,7 +6,7 @@
 #include "kernels/particles/starts.hpp"
 #include "kernels/particles/wang.hpp"
 #include "kernels/wind/shear_stress.hpp"
-#include "src/core/constants.hpp"
+#include "src/core/elementary.hpp"
 
 namespace desert_sim::particles {
 
@@ -68,7 +68,8 @@ LevelRun level_run(const ParticleParameters& p, const Air& air, float up, float 
 }
 
 Starts make_starts(const ParticleParameters& p) {
-  const double root = root_of_gravity_and_diameter(p), angle = p.splash_deg * pi / 180.0;
+  const double root = root_of_gravity_and_diameter(p);
+  const elementary::UnitVector splash = elementary::direction_deg(p.splash_deg);
   const auto splash_number = static_cast<double>(p.splash_number);
   return {p.lift_lowest,
           p.lift_highest,
@@ -76,8 +77,8 @@ Starts make_starts(const ParticleParameters& p) {
           half_turns(p.lift_highest_deg),
           half_turns(p.spread_deg),
           half_turns(p.splash_spread_deg),
-          static_cast<float>(std::sin(angle)),
-          static_cast<float>(std::cos(angle)),
+          static_cast<float>(splash.y),
+          static_cast<float>(splash.x),
           splash_number > 0
               ? static_cast<float>(static_cast<double>(p.splash_momentum) * root / splash_number)
               : 0.0f,
@@ -85,18 +86,17 @@ Starts make_starts(const ParticleParameters& p) {
 }
 
 Wind::Wind(const ParticleParameters& p, wind::Vector above) {
-  const double speed = std::hypot(static_cast<double>(above.x), static_cast<double>(above.y)),
-               d = static_cast<double>(p.grain_diameter),
+  const double speed = elementary::hypot(above.x, above.y), d = static_cast<double>(p.grain_diameter),
                roughness = 1.0 / static_cast<double>(p.grains_per_roughness) * d,
                grain = static_cast<double>(p.grain_density), density = static_cast<double>(p.air_density);
   const double kappa = shear_stress::von_karman;
-  const double focus = static_cast<double>(p.focus_height), near = std::log(focus / roughness);
+  const double focus = static_cast<double>(p.focus_height), near = elementary::log(focus / roughness);
   const double at_threshold =
       static_cast<double>(p.threshold) * std::sqrt(grain / density - 1) * root_of_gravity_and_diameter(p);
   // A wind that carries no grains has one profile down to the ground.
-  const double bare = kappa * speed / std::log(static_cast<double>(p.wind_height) / roughness);
+  const double bare = kappa * speed / elementary::log(static_cast<double>(p.wind_height) / roughness);
   const double u = bare > at_threshold ? (kappa * speed - at_threshold * near) /
-                                             std::log(static_cast<double>(p.wind_height) / focus)
+                                             elementary::log(static_cast<double>(p.wind_height) / focus)
                                        : bare;
   const double at_bed = std::min(u, at_threshold);
   shear_velocity = static_cast<float>(u);

@@ -5,7 +5,7 @@
 #include "kernels/backend/loops.hpp"
 #include "kernels/field/layers.hpp"
 #include "kernels/plants/workspace.hpp"
-#include "src/core/constants.hpp"
+#include "src/core/elementary.hpp"
 
 namespace desert_sim::plants {
 
@@ -66,16 +66,17 @@ struct Illuminate {
 template <class E>
 void illuminate(E& exec, const TerrainView& t, const VegetationParameters& p, const surface::Heights& heights,
                 const Workspace& work) {
-  const float angle = p.light_deg * static_cast<float>(pi) / 180.0f;
-  const Illuminate<true> law{t.grid,
-                             Rays(cosf(angle), sinf(angle), t.grid.cell_size, t.quantum),
-                             heights.cell_heights.data(),
-                             work.tops.cell_heights.data(),
-                             t.quanta(Layer::water),
-                             t.quantum,
-                             p.light_decay,
-                             t.real(Layer::illumination),
-                             t.real(Layer::illumination_canopy)};
+  const elementary::UnitVector light = elementary::direction_deg(p.light_deg);
+  const Illuminate<true> law{
+      t.grid,
+      Rays(static_cast<float>(light.x), static_cast<float>(light.y), t.grid.cell_size, t.quantum),
+      heights.cell_heights.data(),
+      work.tops.cell_heights.data(),
+      t.quanta(Layer::water),
+      t.quantum,
+      p.light_decay,
+      t.real(Layer::illumination),
+      t.real(Layer::illumination_canopy)};
   const Illuminate<false> border{law.grid,    law.rays,        law.heights, law.tops,  law.water,
                                  law.quantum, law.light_decay, law.ground,  law.canopy};
   for_each_cell(exec, t.grid,

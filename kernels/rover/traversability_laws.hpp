@@ -9,6 +9,7 @@
 #include "kernels/rover/wheel_layers.hpp"
 #include "kernels/sand/repose.hpp"
 #include "src/core/constants.hpp"
+#include "src/core/elementary.hpp"
 #include "src/core/parameter_table.hpp"
 
 namespace desert_sim::traversability {
@@ -168,7 +169,7 @@ inline Traversability make_law(const TerrainView& t, const Rover& rover) {
   const int reach = window_cells(p, t.grid.cell_size);
   const Surface surface{t.grid, t.quanta(Layer::elevation), t.quantum};
   return {{surface, reach, t.real(Layer::roughness)},
-          {surface, reach, tanf(p.slope_deg * degree), t.real(Layer::step_height)},
+          {surface, reach, static_cast<float>(elementary::tan_deg(p.slope_deg)), t.real(Layer::step_height)},
           make_wheels_at(t, surface, rover),
           p.slope_deg * degree,
           p.sand_slope_deg * degree,

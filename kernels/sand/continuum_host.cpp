@@ -1,10 +1,10 @@
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "kernels/backend/for_each.hpp"
 #include "kernels/sand/continuum.hpp"
 #include "src/core/constants.hpp"
+#include "src/core/elementary.hpp"
 
 namespace desert_sim::continuum {
 
@@ -17,9 +17,9 @@ float longest_step(const ContinuumParameters& p, const ShearStressParameters& st
   if (!(q > 0)) return std::numeric_limits<float>::infinity();
   const double k = pi / std::max(stress.stress_cell, grid.cell_size), length = k * saturation_length(p);
   const double slope = flux.threshold / (static_cast<double>(p.slope_friction) * shields);
-  const double response = std::hypot(stress.in_phase, stress.in_quadrature, slope);
+  const double response = elementary::hypot(stress.in_phase, stress.in_quadrature, slope);
   constexpr double part = 1.5;
-  return static_cast<float>(part * std::hypot(1.0, length) / (q * k * k * response));
+  return static_cast<float>(part * elementary::hypot(1.0, length) / (q * k * k * response));
 }
 
 Workspace make_workspace(Exec& exec, const Grid& grid) {

@@ -13,7 +13,7 @@
 
 #include "kernels/base/math.hpp"
 #include "kernels/field/layers.hpp"
-#include "src/core/constants.hpp"
+#include "src/core/elementary.hpp"
 #include "src/core/parameter_table.hpp"
 
 namespace desert_sim {
@@ -105,7 +105,7 @@ struct Tangents {
         soil_vegetated(tangent(p.soil_vegetated_deg)),
         bedrock(tangent(p.bedrock_deg)),
         moisture_factor(p) {}
-  static float tangent(float degrees) { return static_cast<float>(std::tan(degrees * pi / 180.0)); }
+  static float tangent(float degrees) { return static_cast<float>(elementary::tan_deg(degrees)); }
 };
 
 }  // namespace repose

@@ -19,7 +19,7 @@ SaturatedFlux::SaturatedFlux(const ContinuumParameters& p, double shear_velocity
   shields_per_wind_squared =
       static_cast<float>(shear_velocity_per_wind * shear_velocity_per_wind / velocity_squared);
   threshold = p.threshold * p.threshold;
-  double q = c * std::pow(velocity_squared, 1.5) / (ratio * p.gravity);
+  double q = c * velocity_squared * std::sqrt(velocity_squared) / (ratio * p.gravity);
   if (law == FluxLaw::quadratic) q = c * static_cast<double>(p.threshold) * d * std::sqrt(velocity_squared);
   if (law == FluxLaw::bagnold || law == FluxLaw::lettau) q *= std::sqrt(d / reference_diameter);
   const auto factor_if = [&](FluxLaw holds) {

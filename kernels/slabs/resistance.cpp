@@ -1,9 +1,8 @@
 /// What resists the wind, and what time makes of it; compiled once for each backend.
 #include "kernels/slabs/resistance.hpp"
 
-#include <cmath>
-
 #include "kernels/backend/loops.hpp"
+#include "src/core/elementary.hpp"
 
 namespace desert_sim::slabs {
 
@@ -35,8 +34,8 @@ void change_resistance(E& exec, const TerrainView& t, const StepInputs& in) {
                              t.quantum,
                              t.quanta(Layer::burial)});
   if (in.kind == SlabKind::snow && in.settlings > 0) {
-    const double rate =
-        in.snow.settling_rate * std::exp(in.snow.settling_warmth * static_cast<double>(in.snow.temperature));
+    const double rate = in.snow.settling_rate *
+                        elementary::exp(in.snow.settling_warmth * static_cast<double>(in.snow.temperature));
     for_each_cell(exec, t.grid,
                   SettleSnow{t.grid,
                              {in.snow.loose_density, in.snow.stiffening},

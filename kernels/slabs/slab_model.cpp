@@ -9,7 +9,7 @@
 #include "kernels/slabs/resistance.hpp"
 #include "kernels/slabs/slab_laws.hpp"
 #include "kernels/slabs/stacks.hpp"
-#include "src/core/constants.hpp"
+#include "src/core/elementary.hpp"
 
 namespace desert_sim::slabs {
 
@@ -50,7 +50,7 @@ inline Lattice make_lattice(const TerrainView& t, const StepInputs& in, const Wo
     return static_cast<Quanta>(std::lround(metres * static_cast<double>(t.quanta_per_metre)));
   };
   const auto repose = [&](float degrees) {
-    return quanta(std::tan(degrees * pi / 180.0) * static_cast<double>(t.grid.cell_size));
+    return quanta(elementary::tan_deg(degrees) * static_cast<double>(t.grid.cell_size));
   };
   // Rounded down, so that a bed of n slab heights, which is rounded to the nearest, has n slabs.
   const auto slab = static_cast<Quanta>(std::floor(static_cast<double>(p.slab_height) * t.quanta_per_metre));
@@ -91,7 +91,7 @@ inline TurnTime time_of_turn(int turn, double poll_times) {
 inline Polls polls_of_turn(SlabPolling polling, int turn, const TurnTime& time, Die die) {
   Polls polls{polling, {}, 0, 0, die, static_cast<std::uint32_t>(turn)};
   const double mean = time.length * Colours::longest_run;
-  double term = std::exp(-mean), up_to = term;
+  double term = elementary::exp(-mean), up_to = term;
   for (int n = 0; n < Polls::most; ++n) {
     polls.more_than[n] = static_cast<std::uint32_t>(std::max(0.0, 1.0 - up_to) * 4294967296.0);
     term *= mean / (n + 1);
@@ -129,12 +129,11 @@ inline Turns make_turns(const TerrainView& t, const StepInputs& in, const Lattic
   const Downwind& order = lattice.order;
   const double cell = static_cast<double>(t.grid.cell_size),
                per_metre = static_cast<double>(t.quanta_per_metre), slab = static_cast<double>(lattice.slab);
-  const double path =
-      std::hypot(1.0, static_cast<double>(order.shift(in.above.x, in.above.y)));  // [cells a line]
+  const double path = elementary::hypot(1, order.shift(in.above.x, in.above.y));  // [cells a line]
   const auto lines = [&](double cells) { return static_cast<float>(cells / path); };
   const double poll_times = static_cast<double>(in.time_step) / static_cast<double>(p.poll_time);
   const int count = turns_of(poll_times);
-  const double speed = std::hypot(static_cast<double>(in.above.x), static_cast<double>(in.above.y));
+  const double speed = elementary::hypot(in.above.x, in.above.y);
   const bool speeding = speeds_up(in.kind);
   const Taken taken{work.taken_cells.data(), work.taken_counts.data(), Taken::capacity_of(order.length())};
   const Fly fly{lattice,
@@ -149,7 +148,7 @@ inline Turns make_turns(const TerrainView& t, const StepInputs& in, const Lattic
                 work.cliffs.data(),
                 dice[Roll::slab_hops],
                 ledger};
-  const double fall = std::tan(p.shadow_deg * pi / 180.0) * path * cell * per_metre;
+  const double fall = elementary::tan_deg(p.shadow_deg) * path * cell * per_metre;
   const auto shaded_lines =
       static_cast<int>(std::ceil(static_cast<double>(p.longest_shadow) / (path * cell)));
   const double entering = static_cast<double>(in.influx * in.time_step) / count / cell * per_metre / slab,

@@ -1,13 +1,13 @@
 #include <algorithm>
-#include <cmath>
 
 #include "kernels/backend/for_each.hpp"
 #include "kernels/slabs/slab_laws.hpp"
+#include "src/core/elementary.hpp"
 
 namespace desert_sim::slabs {
 
 float fresh_density(float temperature) {
-  return static_cast<float>(67.92 + 51.25 * std::exp(static_cast<double>(temperature) / 2.59));
+  return static_cast<float>(67.92 + 51.25 * elementary::exp(static_cast<double>(temperature) / 2.59));
 }
 
 Workspace make_workspace(Exec& exec, const Grid& grid, bool resists) {

@@ -27,7 +27,7 @@
 #include "kernels/water/face_flow.hpp"
 #include "kernels/water/sediment_transport.hpp"
 #include "kernels/water/water_parameters.hpp"
-#include "src/core/constants.hpp"
+#include "src/core/elementary.hpp"
 
 namespace desert_sim::face_flow {
 
@@ -54,8 +54,9 @@ struct Waves {
 
 /// The waves `time` seconds after the run began.
 inline Waves waves_at(double time, const WaterParameters& p, const TerrainView& t) {
+  const double phase_deg = 360 * (std::fmod(time, p.wave_period) / p.wave_period);
   const float swell =
-      p.wave_strength * static_cast<float>(std::fmax(std::sin(2 * pi * time / p.wave_period), 0.0));
+      p.wave_strength * static_cast<float>(std::fmax(elementary::direction_deg(phase_deg).y, 0.0));
   return {swell, 0.125f / (p.wave_depth * p.wave_depth), t.real(Layer::wind_x), t.real(Layer::wind_y)};
 }
 

@@ -7,6 +7,7 @@
 #include "kernels/field/layers.hpp"
 #include "kernels/field/ledger.hpp"
 #include "kernels/water/rain.hpp"
+#include "src/core/elementary.hpp"
 #include "src/core/parameter_table.hpp"
 
 namespace desert_sim::water_sources {
@@ -122,7 +123,7 @@ template <class E>
 void evaporate(E& exec, const TerrainView& t, float rate, float time_step, const Dice& dice,
                LedgerView ledger) {
   if (!(rate > 0.0f)) return;
-  const double lost = -std::expm1(-static_cast<double>(rate) * time_step);
+  const double lost = -elementary::expm1(-static_cast<double>(rate) * time_step);
   for_each_cell(
       exec, t.grid,
       Evaporate{t.grid, static_cast<float>(lost), dice[Roll::evaporation], t.quanta(Layer::water), ledger});

@@ -4,7 +4,7 @@
 #include "kernels/backend/loops.hpp"
 #include "kernels/field/surface.hpp"
 #include "kernels/wind/marching.hpp"
-#include "src/core/constants.hpp"
+#include "src/core/elementary.hpp"
 #include "src/core/parameter_table.hpp"
 
 namespace desert_sim::echo_dunes {
@@ -70,7 +70,7 @@ struct Classify {
 template <class E>
 void step(E& exec, const TerrainView& t, const EchoDuneParameters& p, const surface::Heights& heights,
           float* cliff) {
-  const float steepness = tanf(p.cliff_deg * static_cast<float>(pi) / 180.0f);
+  const auto steepness = static_cast<float>(elementary::tan_deg(p.cliff_deg));
   for_each_cell(exec, t.grid,
                 CliffHeight{t.grid, t.quantum, heights.cell_heights.data(), t.real(Layer::wind_x),
                             t.real(Layer::wind_y), steepness, p.highest, cliff});

@@ -6,7 +6,7 @@
 #include "kernels/backend/loops.hpp"
 #include "kernels/wind/downwind.hpp"
 #include "kernels/wind/surface_wind.hpp"
-#include "src/core/constants.hpp"
+#include "src/core/elementary.hpp"
 
 namespace desert_sim::shear_stress {
 
@@ -280,7 +280,7 @@ void step(E& exec, const TerrainView& t, const ShearStressParameters& p, const w
   // In still air, the wind of local features alone has no direction in which the ground could shelter it.
   const wind::Vector along =
       speed > 0.0f ? wind::Vector{above.x / speed, above.y / speed} : wind::Vector{1, 0};
-  const auto tangent = static_cast<float>(std::tan(p.separation_deg * pi / 180.0));
+  const auto tangent = static_cast<float>(elementary::tan_deg(p.separation_deg));
   const bool responds = speed > 0.0f && (p.in_phase > 0.0f || p.in_quadrature > 0.0f);
   const Downwind order(t.grid, along);
   fill_bubbles(exec, t, p, order, along, tangent, in.heights, work);

@@ -3,6 +3,7 @@
 
 #include "kernels/wind/wind_features.hpp"
 #include "src/core/constants.hpp"
+#include "src/core/elementary.hpp"
 
 namespace desert_sim::wind_features {
 
@@ -23,12 +24,12 @@ FeatureAxis feature_axis(const WindFeatureParameters& f, double extent, bool per
   const double reach = f.kind == WindFeatureKind::jet ? std::max(f.radius, f.length) : f.radius;
   const double at_seam = std::min(0.5 * extent * extent / (pi * pi * reach * reach), 1.0);
   return {static_cast<float>(cells / extent), static_cast<int>(std::min(cells, 1e9)),
-          static_cast<float>(std::min(std::expm1(at_seam) / 1.2, 1.0))};
+          static_cast<float>(std::min(elementary::expm1(at_seam) / 1.2, 1.0))};
 }
 
 /// Of ψ or χ without its lengths [m/s].
 double amplitude(const WindFeatureParameters& f) {
-  const double speed = f.speed, radius = f.radius, length = f.length, e = std::exp(1.0);
+  const double speed = f.speed, radius = f.radius, length = f.length, e = elementary::exp(1);
   switch (f.kind) {
     case WindFeatureKind::vortex:
     case WindFeatureKind::sink:

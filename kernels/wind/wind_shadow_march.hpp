@@ -20,7 +20,7 @@
 #include "kernels/base/math.hpp"
 #include "kernels/field/surface.hpp"
 #include "kernels/wind/marching.hpp"
-#include "src/core/constants.hpp"
+#include "src/core/elementary.hpp"
 
 namespace desert_sim::wind_shadow {
 
@@ -106,10 +106,9 @@ struct ShadowFromSlope {
   float per_rise;     ///< 1 / (full − start)
 
   ShadowFromSlope(float start_deg, float full_deg, float quanta_per_cell) {
-    const float degree = static_cast<float>(pi) / 180.0f;
-    const float tangent = tanf(start_deg * degree);
+    const auto tangent = static_cast<float>(elementary::tan_deg(start_deg));
     start = tangent * quanta_per_cell;
-    full = maximum(tanf(full_deg * degree), tangent + 1e-6f) * quanta_per_cell;
+    full = maximum(static_cast<float>(elementary::tan_deg(full_deg)), tangent + 1e-6f) * quanta_per_cell;
     per_rise = 1.0f / (full - start);
   }
   DESERT_HD float operator()(float steepest) const {

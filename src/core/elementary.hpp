@@ -206,7 +206,11 @@ inline double log(double x) {
   return n * ln2 - ((half_square - rest) - f);
 }
 
-/// Sine, cosine and tangent of angles in radians; NaN for |x| > 2⁴⁵ ≈ 3.5e13.
+/// A unit vector.
+struct UnitVector {
+  double x, y;
+};
+/// Sine, cosine, both as {cos, sin}, and tangent of angles in radians; NaN for |x| > 2⁴⁵ ≈ 3.5e13.
 inline double sin(double x) {
   if (!(std::abs(x) <= internal::largest_angle)) return internal::undefined;
   return std::abs(x) < 0x1p-27 ? x : internal::sine(internal::reduced_angle(x)).rounded();
@@ -215,6 +219,12 @@ inline double cos(double x) {
   if (!(std::abs(x) <= internal::largest_angle)) return internal::undefined;
   return internal::cosine(internal::reduced_angle(x)).rounded();
 }
+inline UnitVector direction(double x) {
+  if (!(std::abs(x) <= internal::largest_angle)) return {internal::undefined, internal::undefined};
+  if (std::abs(x) < 0x1p-27) return {1, x};
+  const internal::ReducedAngle a = internal::reduced_angle(x);
+  return {internal::cosine(a).rounded(), internal::sine(a).rounded()};
+}
 inline double tan(double x) {
   if (!(std::abs(x) <= internal::largest_angle)) return internal::undefined;
   if (std::abs(x) < 0x1p-27) return x;
@@ -222,13 +232,9 @@ inline double tan(double x) {
   return internal::quotient(internal::sine(a), internal::cosine(a)).rounded();
 }
 
-/// A unit vector.
-struct UnitVector {
-  double x, y;
-};
 /// {cos, sin} of an angle in degrees, of any size: exact at multiples of 90, and the same in all octants but
 /// for signs and order.
-inline UnitVector direction(double angle_deg) {
+inline UnitVector direction_deg(double angle_deg) {
   const double within = std::remainder(angle_deg, 360);
   const internal::ReducedAngle a = internal::reduced_degrees(std::abs(within));
   return {internal::cosine(a).rounded() + 0.0, std::copysign(internal::sine(a).rounded(), within)};

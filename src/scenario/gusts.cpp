@@ -1,10 +1,10 @@
 #include "src/scenario/gusts.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "kernels/field/draws.hpp"
 #include "kernels/field/random.hpp"
+#include "src/core/elementary.hpp"
 #include "src/scenario/wind_regime.hpp"
 
 namespace desert_sim {
@@ -16,8 +16,7 @@ wind::Vector Gusts::around(wind::Vector regime, double time) const {
   // Roses draw with the same purpose, and with 0 where a member has its number.
   const RandomWords draw = random_words(seed, Purpose::wind_rose, static_cast<std::uint32_t>(gust),
                                         static_cast<std::uint32_t>(gust >> 32), member);
-  const double speed = std::hypot(static_cast<double>(regime.x), static_cast<double>(regime.y)),
-               most = std::max(1.0, highest_speed / speed),
+  const double speed = elementary::hypot(regime.x, regime.y), most = std::max(1.0, highest_speed / speed),
                share = std::clamp(
                    1 + gust_speed * static_cast<double>(normal_draw(draw.word[0], draw.word[1])), 0.0, most);
   // A rotation, because directions as angles would round.

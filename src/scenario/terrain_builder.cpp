@@ -4,15 +4,13 @@
 #include <cmath>
 
 #include "kernels/field/random.hpp"
-#include "src/core/constants.hpp"
+#include "src/core/elementary.hpp"
 #include "src/scenario/sections.hpp"
 #include "src/terrain/terrain.hpp"
 
 namespace desert_sim {
 
 namespace {
-
-constexpr double degree = pi / 180.0;  // [rad]
 
 /// Position of a step's shape: its centre relative to the grid's lower-left corner [m], and the direction of
 /// its axes. On a periodic axis, a cell's distance from the centre is the shortest one.
@@ -27,8 +25,9 @@ struct Placement {
     y = step.relative ? step.y * s.grid.height * l : step.y - s.grid.origin_y;
   }
   void set_rotation(double angle_deg) {
-    cos = std::cos(angle_deg * degree);
-    sin = std::sin(angle_deg * degree);
+    const elementary::UnitVector axis = elementary::direction_deg(angle_deg);
+    cos = axis.x;
+    sin = axis.y;
   }
   /// Position of a cell's centre relative to the shape's centre, along the shape's axes [m].
   void local(int ix, int iy, double l, double& along, double& across) const {
@@ -157,7 +156,7 @@ class Builder {
       double a, b;
       place.local(x, y, s_.grid.cell_size, a, b);
       const double r = std::sqrt(a * a + b * b) / p.radius;
-      if (p.shape == HillShape::gaussian) return p.height * std::exp(-0.5 * r * r);
+      if (p.shape == HillShape::gaussian) return p.height * elementary::exp(-0.5 * r * r);
       if (p.shape == HillShape::dome) return p.height * std::max(0.0, 1 - r * r);
       return p.height * std::max(0.0, 1 - r);
     });
@@ -207,12 +206,13 @@ class Builder {
   }
 
   void run(const RipplesStep& p) {
-    const double l = s_.grid.cell_size, cos = std::cos(p.direction_deg * degree),
-                 sin = std::sin(p.direction_deg * degree);
+    const double l = s_.grid.cell_size;
+    const elementary::UnitVector downwind = elementary::direction_deg(p.direction_deg);
     const double x0 = p.relative ? p.x * s_.grid.width * l : p.x - s_.grid.origin_x,
                  y0 = p.relative ? p.y * s_.grid.height * l : p.y - s_.grid.origin_y;
     fill(p.layer, p.merge, [&](int x, int y) {
-      const double waves = (((x + 0.5) * l - x0) * cos + ((y + 0.5) * l - y0) * sin) / p.wavelength;
+      const double waves =
+          (((x + 0.5) * l - x0) * downwind.x + ((y + 0.5) * l - y0) * downwind.y) / p.wavelength;
       const double number = std::floor(waves), phase = waves - number;
       if (p.count > 0 && (number < 0 || number >= p.count)) return 0.0;
       return p.height * (phase < p.windward ? phase / p.windward : (1 - phase) / (1 - p.windward));

@@ -130,7 +130,7 @@ int Ramp::step_index_at(double time) const {
 }
 
 void sort_by_path(std::vector<Ramp>& ramps) {
-  std::sort(ramps.begin(), ramps.end(), [](const Ramp& a, const Ramp& b) { return a.path < b.path; });
+  std::stable_sort(ramps.begin(), ramps.end(), [](const Ramp& a, const Ramp& b) { return a.path < b.path; });
 }
 
 std::vector<Ramp> extract_ramps(const Scenario& scenario, std::vector<std::string>& settings, double time,

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "kernels/field/random.hpp"
-#include "src/core/constants.hpp"
+#include "src/core/elementary.hpp"
 #include "src/scenario/yaml_parameters.hpp"
 
 namespace desert_sim {
@@ -23,15 +23,8 @@ wind::Vector interpolate_ramp(wind::Vector a, wind::Vector b, double elapsed, do
 }  // namespace
 
 wind::Vector unit_vector(double direction_deg) {
-  const double angle_deg = std::fmod(direction_deg, 360.0);
-  const double quarters = angle_deg / 90.0;
-  if (quarters == std::floor(quarters)) {
-    constexpr int cosines[] = {1, 0, -1, 0};
-    const int q = (static_cast<int>(quarters) % 4 + 4) % 4;
-    return {static_cast<float>(cosines[q]), static_cast<float>(cosines[(q + 3) % 4])};
-  }
-  return {static_cast<float>(std::cos(angle_deg * pi / 180)),
-          static_cast<float>(std::sin(angle_deg * pi / 180))};
+  const auto [x, y] = elementary::direction_deg(direction_deg);
+  return {static_cast<float>(x), static_cast<float>(y)};
 }
 
 wind::Vector wind_vector(double direction_deg, double speed) {
@@ -40,8 +33,8 @@ wind::Vector wind_vector(double direction_deg, double speed) {
 }
 
 void speed_and_direction(wind::Vector w, double& speed, double& direction_deg) {
-  speed = std::hypot(static_cast<double>(w.x), static_cast<double>(w.y));
-  direction_deg = speed > 0 ? std::atan2(static_cast<double>(w.y), static_cast<double>(w.x)) * 180 / pi : 0;
+  speed = elementary::hypot(w.x, w.y);
+  direction_deg = speed > 0 ? elementary::atan2_deg(w.y, w.x) : 0;
 }
 
 void check_wind_segments(WindRegimeKind kind, const std::vector<WindSegment>& segments,

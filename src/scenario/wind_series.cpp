@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "src/core/csv.hpp"
+#include "src/core/elementary.hpp"
 #include "src/core/error.hpp"
 #include "src/core/number_text.hpp"
 #include "src/core/quoted.hpp"
@@ -119,8 +120,7 @@ double WindSeries::shortest_interval() const {
 
 double WindSeries::fastest() const {
   double fastest = 0;
-  for (const Row& row : rows)
-    fastest = std::max(fastest, std::hypot(static_cast<double>(row.wind.x), static_cast<double>(row.wind.y)));
+  for (const Row& row : rows) fastest = std::max(fastest, elementary::hypot(row.wind.x, row.wind.y));
   return fastest;
 }
 
@@ -149,7 +149,7 @@ WindSeries WindSeries::from_text(const std::string& text, const std::string& sou
     const std::vector<std::string> fields = csv_fields(word, ',');
     double time = 0, x = 0, y = 0;
     if (fields.size() != 3 || !read_plain_number(fields[0], time) || !read_plain_number(fields[1], x) ||
-        !read_plain_number(fields[2], y) || !(std::hypot(x, y) <= max_series_speed + 1) ||
+        !read_plain_number(fields[2], y) || !(elementary::hypot(x, y) <= max_series_speed + 1) ||
         (!series.rows.empty() && !(time > series.rows.back().time)))
       refuse(word);
     series.rows.push_back({time, {static_cast<float>(x), static_cast<float>(y)}});

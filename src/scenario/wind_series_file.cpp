@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "src/core/csv.hpp"
+#include "src/core/elementary.hpp"
 #include "src/core/input_file.hpp"
 #include "src/core/log.hpp"
 #include "src/core/lower_case.hpp"
@@ -226,8 +227,7 @@ void treat_gaps(RowReader& read, const std::string& source, SeriesGap gap, Valid
   }
   if (gaps == 0) return;
   const double from = rows[longest].time, length = end_of(longest) - from;
-  const double speed =
-      std::hypot(static_cast<double>(rows[longest].wind.x), static_cast<double>(rows[longest].wind.y));
+  const double speed = elementary::hypot(rows[longest].wind.x, rows[longest].wind.y);
   const std::string said = "has " + std::to_string(gaps) + (gaps == 1 ? " gap" : " gaps") +
                            " between its rows, the "
                            "longest of " +

@@ -28,8 +28,8 @@ std::size_t MarkedText::next_line(std::size_t place) const {
 
 std::string MarkedText::with(std::vector<Change> changes) const {
   // From the end to the beginning, so that the places of what comes before stay true.
-  std::sort(changes.begin(), changes.end(),
-            [](const Change& a, const Change& b) { return a.begin > b.begin; });
+  std::stable_sort(changes.begin(), changes.end(),
+                   [](const Change& a, const Change& b) { return a.begin > b.begin; });
   std::string changed = text_;
   for (const Change& change : changes) changed.replace(change.begin, change.end - change.begin, change.by);
   return changed;

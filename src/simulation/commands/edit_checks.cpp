@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "src/core/did_you_mean.hpp"
+#include "src/core/elementary.hpp"
 #include "src/core/joined.hpp"
 #include "src/scenario/range_checks.hpp"
 #include "src/simulation/commands/edited_layers.hpp"
@@ -31,7 +32,7 @@ void check_layer(const EditTerrain& edit, ValidationErrors& errors) {
 /// Whether all points lie on one line, or in one place.
 bool has_no_area(const std::vector<Point>& points) {
   const Point& first = points.front();
-  const auto distance = [&](const Point& p) { return std::hypot(p.x - first.x, p.y - first.y); };
+  const auto distance = [&](const Point& p) { return elementary::hypot(p.x - first.x, p.y - first.y); };
   const Point& far = *std::max_element(points.begin(), points.end(), [&](const Point& p, const Point& q) {
     return distance(p) < distance(q);
   });

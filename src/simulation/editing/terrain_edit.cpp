@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "kernels/base/math.hpp"
+#include "src/core/elementary.hpp"
 #include "src/core/error.hpp"
 #include "src/simulation/commands/edit_checks.hpp"
 #include "src/simulation/commands/ring.hpp"
@@ -148,8 +149,8 @@ void TerrainEdit::set_shape() {
   }
   const double u = a + ring, v = b + ring;  // half extents of the turned shape, with its ring
   if (circle || command_.shape == BrushShape::ellipse) {
-    set_window(command_.x, command_.y, std::hypot(u * axis.x, v * axis.y) - ring,
-               std::hypot(u * axis.y, v * axis.x) - ring);
+    set_window(command_.x, command_.y, elementary::hypot(u * axis.x, v * axis.y) - ring,
+               elementary::hypot(u * axis.y, v * axis.x) - ring);
   } else {
     const double along = std::abs(axis.x), across = std::abs(axis.y);
     set_window(command_.x, command_.y, u * along + v * across - ring, u * across + v * along - ring);

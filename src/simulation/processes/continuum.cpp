@@ -1,8 +1,6 @@
 /// The process of continuum transport.
 #include "kernels/sand/continuum.hpp"
 
-#include <cmath>
-
 #include "kernels/sand/saltation.hpp"
 #include "src/simulation/processes/processes.hpp"
 
@@ -35,7 +33,7 @@ float longest_step(const SimulationState& state) {
   const wind::Vector above = state.wind_above();
   return continuum::longest_step(state.scenario.get<ContinuumParameters>(),
                                  state.scenario.get<ShearStressParameters>(), state.terrain.grid(),
-                                 std::hypot(above.x, above.y));
+                                 hypotenuse(above.x, above.y));
 }
 
 }  // namespace

@@ -1,9 +1,7 @@
 #include "src/simulation/processes/sand_slopes.hpp"
 
-#include <cmath>
-
 #include "kernels/field/statistics.hpp"
-#include "src/core/constants.hpp"
+#include "src/core/elementary.hpp"
 
 namespace desert_sim {
 
@@ -18,7 +16,7 @@ Residual sand_residual(const SimulationState& state, Pipeline& pipeline) {
 double max_sand_slope_deg(const SimulationState& state) {
   const float tangent =
       with_backend(state.exec(), [&](auto& e) { return statistics::sand_slope(e, state.terrain.view()); });
-  return std::atan(tangent) * 180 / pi;
+  return elementary::atan_deg(tangent);
 }
 
 }  // namespace desert_sim

@@ -2,13 +2,11 @@
 /// eddies before cliffs.
 #include "kernels/wind/wind.hpp"
 
-#include <cmath>
-
 #include "kernels/wind/echo_dunes.hpp"
 #include "kernels/wind/shear_stress.hpp"
 #include "kernels/wind/wind_features.hpp"
 #include "kernels/wind/wind_shadow.hpp"
-#include "src/core/constants.hpp"
+#include "src/core/elementary.hpp"
 #include "src/simulation/processes/limits.hpp"
 #include "src/simulation/processes/processes.hpp"
 
@@ -240,7 +238,7 @@ Process echo_dune_process() {
   p.check = [](const Scenario& s, ValidationErrors& errors) {
     const EchoDuneParameters& echo = s.get<EchoDuneParameters>();
     check_reach(s, "echo_dunes.sticky_reach", static_cast<double>(echo.sticky_reach) * echo.highest, errors);
-    const double steepness = std::tan(echo.cliff_deg * pi / 180.0);  // from the top of a cliff to its foot
+    const double steepness = elementary::tan_deg(echo.cliff_deg);  // from the top of a cliff to its foot
     check_reach(s, "echo_dunes.highest", echo.highest / steepness, errors);
   };
   p.reads_heights = true;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <complex>
 #include <limits>
 
 #include "kernels/backend/exec.hpp"
@@ -111,7 +110,8 @@ void MicroRelief::fill_cells(const Snapshot& s) {
   stones_ = layer(Layer::obstacle);
   for (std::vector<float>* const values : {&mobile_, &level_, &turn_x_, &turn_y_})
     values->assign(cells, 0.0f);
-  const std::complex<float> above(s.wind_above.x, s.wind_above.y);
+  const wind::Vector above = s.wind_above;
+  const float square = above.x * above.x + above.y * above.y;
   const auto is_zero = [](const std::vector<float>& values) {
     return std::all_of(values.begin(), values.end(), [](float v) { return v == 0; });
   };
@@ -120,7 +120,7 @@ void MicroRelief::fill_cells(const Snapshot& s) {
                                             : is_zero(growth_);
   if (bare && is_zero(stones_)) relief_.bumps.height = 0;  // it saves looking for them
   // Some models move sand without a layer of the wind.
-  const bool wind_is_known = std::abs(above) > 1e-3f && !(is_zero(wind_x) && is_zero(wind_y));
+  const bool wind_is_known = square > 1e-6f && !(is_zero(wind_x) && is_zero(wind_y));
   const float steep = settings_.repose_tangent;
   const saltation::Dryness dryness(settings_.moisture_cutoff);
   for (int y = 0; y < rows_; ++y)
@@ -132,12 +132,10 @@ void MicroRelief::fill_cells(const Snapshot& s) {
                static_cast<std::size_t>(column);
       };
       const std::size_t i = at(x, y);
-      const std::complex<float> turn =
-          wind_is_known ? std::complex<float>(wind_x[i], wind_y[i]) / above : std::complex<float>(1.0f, 0.0f);
-      turn_x_[i] = turn.real();
-      turn_y_[i] = turn.imag();
+      turn_x_[i] = wind_is_known ? (wind_x[i] * above.x + wind_y[i] * above.y) / square : 1.0f;
+      turn_y_[i] = wind_is_known ? (wind_y[i] * above.x - wind_x[i] * above.y) / square : 0.0f;
       const float two_cells = static_cast<float>(2 * cell_size_);
-      const float slope = std::hypot(elevation_[at(x + 1, y)] - elevation_[at(x - 1, y)],
+      const float slope = hypotenuse(elevation_[at(x + 1, y)] - elevation_[at(x - 1, y)],
                                      elevation_[at(x, y + 1)] - elevation_[at(x, y - 1)]) /
                           two_cells;
       if (std::isnan(slope) || std::isnan(elevation_[i])) continue;
