@@ -6,6 +6,8 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include "src/core/elementary.hpp"
+
 namespace desert_sim {
 
 /// The product of a matrix and a vector.
@@ -19,6 +21,16 @@ inline Eigen::Quaterniond turned(const Eigen::Quaterniond& a, const Eigen::Quate
           a.w() * b.x() + a.x() * b.w() + a.y() * b.z() - a.z() * b.y(),
           a.w() * b.y() - a.x() * b.z() + a.y() * b.w() + a.z() * b.x(),
           a.w() * b.z() + a.x() * b.y() - a.y() * b.x() + a.z() * b.w()};
+}
+
+/// The turn by `roll` about x, then `pitch` about y, then `yaw` about z; each is {cos, sin} of half an angle.
+inline Eigen::Quaterniond turn_of_halves(const elementary::UnitVector& roll,
+                                         const elementary::UnitVector& pitch,
+                                         const elementary::UnitVector& yaw) {
+  return {roll.x * pitch.x * yaw.x + roll.y * pitch.y * yaw.y,
+          roll.y * pitch.x * yaw.x - roll.x * pitch.y * yaw.y,
+          roll.x * pitch.y * yaw.x + roll.y * pitch.x * yaw.y,
+          roll.x * pitch.x * yaw.y - roll.y * pitch.y * yaw.x};
 }
 
 }  // namespace desert_sim

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "src/core/elementary.hpp"
 #include "src/core/error.hpp"
 #include "src/core/host_memory.hpp"
 #include "src/core/number_text.hpp"
@@ -140,7 +141,7 @@ std::optional<CellIndex> CostGrid::nearest_passable(const GridPoint& p, double d
   for_each_within(distance, *middle, [&](CellIndex c) {
     if (costs_[c] == lethal) return;
     const GridPoint q = centre(c);
-    const double away = std::hypot(q.x - p.x, q.y - p.y);
+    const double away = elementary::hypot(q.x - p.x, q.y - p.y);
     if (!best || away < nearest) best = c, nearest = away;
   });
   return best;

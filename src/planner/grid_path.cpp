@@ -4,11 +4,13 @@
 #include <cmath>
 #include <limits>
 
+#include "src/core/elementary.hpp"
+
 namespace desert_sim {
 
 namespace {
 
-double distance(const GridPoint& a, const GridPoint& b) { return std::hypot(b.x - a.x, b.y - a.y); }
+double distance(const GridPoint& a, const GridPoint& b) { return elementary::hypot(b.x - a.x, b.y - a.y); }
 
 /// Walks along a line from one border of cells to the next, in units of cells (Amanatides and Woo 1987).
 class CellWalk {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "src/core/elementary.hpp"
 #include "src/core/error.hpp"
 
 namespace desert_sim {
@@ -32,13 +33,14 @@ std::optional<double> HeadingCosts::metre(const GridPoint& at, double east, doub
   const std::size_t i = index(x, y);
   const double rise_x = value(layers_.elevation, index(x + 1, y)) - value(layers_.elevation, index(x - 1, y)),
                rise_y = value(layers_.elevation, index(x, y + 1)) - value(layers_.elevation, index(x, y - 1)),
-               steepness = std::hypot(rise_x, rise_y);
+               steepness = elementary::hypot(rise_x, rise_y);
   const double uphill = steepness > 0 ? (rise_x * east + rise_y * north) / steepness : 0;
   const double up = value(layers_.slip, i), down = value(layers_.slip_downhill, i);
   const double slip = (up + down) / 2 + uphill * std::abs(uphill) * (up - down) / 2;
   const double headwind = -(value(layers_.wind_x, i) * east + value(layers_.wind_y, i) * north);
   const double depth = std::max(value(layers_.water_depth, i), 0.0),
-               speed = std::hypot(value(layers_.water_velocity_x, i), value(layers_.water_velocity_y, i));
+               speed =
+                   elementary::hypot(value(layers_.water_velocity_x, i), value(layers_.water_velocity_y, i));
   return 1 + weights_.slip * std::max(slip, 0.0) +
          weights_.drift * (1 - uphill * uphill) * std::abs(value(layers_.slip_across, i)) +
          weights_.sinkage * std::max(value(layers_.sinkage, i), 0.0) +
@@ -46,7 +48,7 @@ std::optional<double> HeadingCosts::metre(const GridPoint& at, double east, doub
 }
 
 std::optional<double> HeadingCosts::line(const GridPoint& from, const GridPoint& to) const {
-  const double length = std::hypot(to.x - from.x, to.y - from.y);
+  const double length = elementary::hypot(to.x - from.x, to.y - from.y);
   if (!line_cost(*grid_, from, to)) return std::nullopt;
   if (!(length > 0)) return 0;
   const int samples = std::max(1, static_cast<int>(std::ceil(length / grid_->frame().cell_size)));

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "src/core/constants.hpp"
+#include "src/core/elementary.hpp"
 #include "src/core/error.hpp"
 #include "src/core/number_text.hpp"
 
@@ -11,7 +12,7 @@ namespace desert_sim {
 
 namespace {
 
-double distance(const PlanarPose& a, const PlanarPose& b) { return std::hypot(a.x - b.x, a.y - b.y); }
+double distance(const PlanarPose& a, const PlanarPose& b) { return elementary::hypot(a.x - b.x, a.y - b.y); }
 
 }  // namespace
 
@@ -222,8 +223,10 @@ void Navigator::begin_recovery(const std::string& why) {
   if (!(parameters_.avoid_radius > 0) || recovery_->direction > 0) return;
   // What is ahead is avoided; the ground on which the rover stands must stay passable.
   const double ahead = parameters_.radius + parameters_.avoid_radius;
-  const GridPoint p{pose_.x + ahead * std::cos(pose_.yaw), pose_.y + ahead * std::sin(pose_.yaw)};
-  if (std::hypot(p.x - goal_->x, p.y - goal_->y) <= parameters_.avoid_radius + parameters_.radius) return;
+  const elementary::UnitVector way = elementary::direction(pose_.yaw);
+  const GridPoint p{pose_.x + ahead * way.x, pose_.y + ahead * way.y};
+  if (elementary::hypot(p.x - goal_->x, p.y - goal_->y) <= parameters_.avoid_radius + parameters_.radius)
+    return;
   grid_->mark(p, parameters_.avoid_radius, true, changed_);
   avoided_.push_back(p);
   ground_changed_ = true;
@@ -267,8 +270,8 @@ DriveCommand Navigator::follow() {
   double way = 0;
   for (std::size_t n = 0; n < schedule_.size(); ++n) {
     if (n > 0)
-      way += std::hypot(schedule_[n].point.x - schedule_[n - 1].point.x,
-                        schedule_[n].point.y - schedule_[n - 1].point.y);
+      way += elementary::hypot(schedule_[n].point.x - schedule_[n - 1].point.x,
+                               schedule_[n].point.y - schedule_[n - 1].point.y);
     if (way < pursuit_.done() - near) continue;
     if (way > pursuit_.done() + near) break;
     if (std::isinf(schedule_[n].departure)) return wait_in_shelter();

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "src/core/elementary.hpp"
 #include "src/core/error.hpp"
 #include "src/core/number_text.hpp"
 #include "src/planner/navigator.hpp"
@@ -61,7 +62,7 @@ std::string Navigator::need_of_path() {
   const GridPath& path = pursuit_.path();
   double way = 0, planned = cost_left_.front();
   for (std::size_t n = 1; n < path.size(); ++n) {
-    const double length = std::hypot(path[n].x - path[n - 1].x, path[n].y - path[n - 1].y);
+    const double length = elementary::hypot(path[n].x - path[n - 1].x, path[n].y - path[n - 1].y);
     if (way + length >= pursuit_.done()) {
       const double share = length > 0 ? (pursuit_.done() - way) / length : 0;
       planned = cost_left_[n - 1] + (cost_left_[n] - cost_left_[n - 1]) * share;

@@ -16,6 +16,8 @@
 #include <limits>
 #include <mutex>
 
+#include "src/core/elementary.hpp"
+
 namespace desert_sim {
 
 namespace {
@@ -91,11 +93,11 @@ GridPath straightened(const HeadingCosts& costs, GridPath path) {
 /// are as far from both together, since a metre costs 1 at least; on the terrain.
 ob::RealVectorBounds bounds_of(const GridFrame& f, const GridPoint& start, const GridPoint& goal,
                                double most) {
-  const double dx = goal.x - start.x, dy = goal.y - start.y, apart = std::hypot(dx, dy);
+  const double dx = goal.x - start.x, dy = goal.y - start.y, apart = elementary::hypot(dx, dy);
   const double a = most / 2, b = std::sqrt(std::max(a * a - apart * apart / 4, 0.0));
   const double c = apart > 0 ? dx / apart : 1, s = apart > 0 ? dy / apart : 0;
-  const double half_x = std::hypot(a * c, b * s) + f.cell_size,
-               half_y = std::hypot(a * s, b * c) + f.cell_size;
+  const double half_x = elementary::hypot(a * c, b * s) + f.cell_size,
+               half_y = elementary::hypot(a * s, b * c) + f.cell_size;
   const double x = (start.x + goal.x) / 2, y = (start.y + goal.y) / 2;
   ob::RealVectorBounds bounds(2);
   bounds.setLow(0, std::max(f.origin_x, x - half_x));

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "src/core/constants.hpp"
+#include "src/core/elementary.hpp"
 
 namespace desert_sim {
 
@@ -18,7 +19,7 @@ constexpr double slowest = 0.25;        // share of the speed at the end of the 
 }  // namespace
 
 double bearing(const PlanarPose& pose, double dx, double dy) {
-  return std::remainder(std::atan2(dy, dx) - pose.yaw, 2 * pi);
+  return std::remainder(elementary::atan2(dy, dx) - pose.yaw, 2 * pi);
 }
 
 DriveCommand turn(double angle, double yaw_rate) {
@@ -30,8 +31,9 @@ void PurePursuit::follow(GridPath path) {
   path_ = std::move(path);
   way_.clear();
   for (std::size_t n = 0; n < path_.size(); ++n)
-    way_.push_back(
-        n == 0 ? 0 : way_.back() + std::hypot(path_[n].x - path_[n - 1].x, path_[n].y - path_[n - 1].y));
+    way_.push_back(n == 0 ? 0
+                          : way_.back() +
+                                elementary::hypot(path_[n].x - path_[n - 1].x, path_[n].y - path_[n - 1].y));
   done_ = off_path_ = 0;
   turning_ = false;
 }
@@ -39,7 +41,7 @@ void PurePursuit::follow(GridPath path) {
 void PurePursuit::locate(const PlanarPose& pose) {
   pose_ = pose;
   if (path_.empty()) return;
-  off_path_ = std::hypot(path_.front().x - pose.x, path_.front().y - pose.y);
+  off_path_ = elementary::hypot(path_.front().x - pose.x, path_.front().y - pose.y);
   const double from = done_, reach = from + 3 * parameters_.lookahead;
   double nearest = std::numeric_limits<double>::infinity();
   for (std::size_t n = 1; n < path_.size() && way_[n - 1] <= reach; ++n) {
@@ -50,7 +52,7 @@ void PurePursuit::locate(const PlanarPose& pose) {
     const double along = ((pose.x - a.x) * (b.x - a.x) + (pose.y - a.y) * (b.y - a.y)) / length;
     const double at = std::clamp(along, std::clamp(from - way_[n - 1], 0.0, length), length);
     const double away =
-        std::hypot(a.x + (b.x - a.x) * at / length - pose.x, a.y + (b.y - a.y) * at / length - pose.y);
+        elementary::hypot(a.x + (b.x - a.x) * at / length - pose.x, a.y + (b.y - a.y) * at / length - pose.y);
     if (away < nearest) nearest = off_path_ = away, done_ = way_[n - 1] + at;
   }
 }
@@ -76,12 +78,12 @@ GridPath PurePursuit::remaining() const {
 DriveCommand PurePursuit::command() {
   if (path_.empty()) return {};
   const GridPoint ahead = point_at(done_ + parameters_.lookahead);
-  const double dx = ahead.x - pose_.x, dy = ahead.y - pose_.y, distance = std::hypot(dx, dy);
+  const double dx = ahead.x - pose_.x, dy = ahead.y - pose_.y, distance = elementary::hypot(dx, dy);
   if (!(distance > 0)) return {};
   const double angle = bearing(pose_, dx, dy);
   turning_ = std::abs(angle) > (turning_ ? facing : parameters_.turn_angle_deg * pi / 180);
   if (turning_ && parameters_.turns_on_the_spot) return turn(angle, parameters_.yaw_rate);
-  double curvature = 2 * std::sin(angle) / distance;
+  double curvature = 2 * elementary::sin(angle) / distance;
   if (!parameters_.turns_on_the_spot) {
     const double most = 1 / parameters_.narrowest_arc;
     if (std::abs(angle) > pi / 2) curvature = std::copysign(most, angle);

@@ -7,6 +7,7 @@
 #include <tuple>
 #include <utility>
 
+#include "src/core/elementary.hpp"
 #include "src/core/error.hpp"
 
 namespace desert_sim {
@@ -122,7 +123,8 @@ void TimedPlanner::expand(Search& search, const Label& label) const {
         there.departed = departure;
         there.before = static_cast<std::uint32_t>(label.cell * search.slots + label.first);
         const GridPoint p = frame_.centre(to), q = frame_.centre(search.goal);
-        search.open.push({*time + std::hypot(q.x - p.x, q.y - p.y) / parameters_.speed, *time, to, first});
+        search.open.push(
+            {*time + elementary::hypot(q.x - p.x, q.y - p.y) / parameters_.speed, *time, to, first});
       }
     }
 }
@@ -176,7 +178,7 @@ std::vector<TimedPoint> TimedPlanner::plan(CellIndex start, CellIndex goal, cons
     if (label.cell == goal) return path_to(search, interval, here.arrival);
     expand(search, label);
     const GridPoint p = frame_.centre(label.cell);
-    const double distance = std::hypot(q.x - p.x, q.y - p.y);
+    const double distance = elementary::hypot(q.x - p.x, q.y - p.y);
     if (distance < nearest && last_of(label.cell, label.first) + 1 == search.slots) {
       nearest = distance;
       shelter = interval;

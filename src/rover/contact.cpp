@@ -6,6 +6,7 @@
 #include <sstream>
 #include <utility>
 
+#include "src/core/elementary.hpp"
 #include "src/core/number_text.hpp"
 #include "src/core/rotation.hpp"
 
@@ -48,14 +49,16 @@ Hindrance Contact::missing_ground(const RoverState& state, const GroundSource& g
 double Contact::surface(double x, double y, double yaw, const GroundSource& ground) const {
   constexpr int fewest = 6;  // points of the rim to either side: 0.4 % of the radius off at most on a plane
   constexpr int most = 200;
-  const double r = rover_.wheel_radius, c = std::cos(yaw), s = std::sin(yaw);
+  const double r = rover_.wheel_radius;
+  const elementary::UnitVector ahead = elementary::direction(yaw);
   const int half =
       static_cast<int>(std::clamp(std::ceil(1.5 * r / ground.finest_feature()), 1.0 * fewest, 1.0 * most));
   double highest = -std::numeric_limits<double>::infinity();
   for (int n = -half; n <= half; ++n) {
     // The points are even in angle, so that they are dense where steep ground touches the rim.
-    const double angle = n * (1.5 / half), u = r * std::sin(angle), drop = r * std::cos(angle);
-    if (const std::optional<double> z = ground.elevation(x + u * c, y + u * s))
+    const elementary::UnitVector rim = elementary::direction(n * (1.5 / half));
+    const double u = r * rim.y, drop = r * rim.x;
+    if (const std::optional<double> z = ground.elevation(x + u * ahead.x, y + u * ahead.y))
       highest = std::max(highest, *z + drop);
   }
   return highest - r;
@@ -69,8 +72,9 @@ GroundPoint Contact::point(const Eigen::Vector3d& hub, const GroundSource& groun
 
 Contact::Direction Contact::way_of(const RoverState& state, const WheelMotion& motion, int wheel) {
   const auto n = static_cast<std::size_t>(wheel);
-  const double angle = state.pose.yaw + motion.steer[n], sign = motion.rim_speed[n] < 0 ? -1 : 1;
-  return {sign * std::cos(angle), sign * std::sin(angle)};
+  const double sign = motion.rim_speed[n] < 0 ? -1 : 1;
+  const elementary::UnitVector way = elementary::direction(state.pose.yaw + motion.steer[n]);
+  return {sign * way.x, sign * way.y};
 }
 
 GroundUnderWheels Contact::under(const RoverState& state, const WheelMotion& motion,
@@ -100,8 +104,8 @@ GroundUnderWheels Contact::under(const RoverState& state, const WheelMotion& mot
 double Contact::load_share(const RoverState& state, int wheel) const {
   const Eigen::Vector3d& h = suspension_.hub_at_rest(wheel);
   const double height = rover_.mass_height - rover_.wheel_radius;
-  const double share = 1 + height * (std::tan(state.pose.pitch) * h.x() / mean_square_x_ -
-                                     std::tan(state.pose.roll) * h.y() / mean_square_y_);
+  const double share = 1 + height * (elementary::tan(state.pose.pitch) * h.x() / mean_square_x_ -
+                                     elementary::tan(state.pose.roll) * h.y() / mean_square_y_);
   return std::clamp(share, 0.0, 3.0);
 }
 

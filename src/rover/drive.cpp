@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "src/core/constants.hpp"
+#include "src/core/elementary.hpp"
 
 namespace desert_sim {
 
@@ -22,19 +23,19 @@ Drive::Velocity Drive::at_hub(const DriveCommand& m, int wheel) const {
 
 double Drive::rim_speed_of(const DriveCommand& m, int wheel) const {
   const Velocity v = at_hub(m, wheel);
-  return rover_.steering == Steering::skid ? std::abs(v.x) : std::hypot(v.x, v.y);
+  return rover_.steering == Steering::skid ? std::abs(v.x) : elementary::hypot(v.x, v.y);
 }
 
 DriveCommand Drive::limited(const DriveCommand& command) const {
   DriveCommand c = command;
   if (rover_.steering != Steering::per_wheel) c.sideways = 0;
-  const double speed = std::hypot(c.forward, c.sideways);
+  const double speed = elementary::hypot(c.forward, c.sideways);
   if (speed > rover_.max_speed) c.forward *= rover_.max_speed / speed, c.sideways *= rover_.max_speed / speed;
   c.yaw_rate = std::clamp(c.yaw_rate, -rover_.max_yaw_rate, rover_.max_yaw_rate);
   if (rover_.steering == Steering::ackermann) {
     // The wheels of the inner side steer most: tan(steer) = (wheelbase/2)/(radius − track/2).
     const double tightest =
-        rover_.track / 2 + rover_.wheelbase / 2 / std::tan(rover_.max_steer_deg * pi / 180);
+        rover_.track / 2 + rover_.wheelbase / 2 / elementary::tan_deg(rover_.max_steer_deg);
     const double fastest = std::abs(c.forward) / tightest;
     c.yaw_rate = std::clamp(c.yaw_rate, -fastest, fastest);
   }
@@ -65,10 +66,10 @@ WheelMotion Drive::wheels_for(const DriveCommand& m,
       motion.rim_speed[n] = v.x;
       continue;
     }
-    const double speed = std::hypot(v.x, v.y);
+    const double speed = elementary::hypot(v.x, v.y);
     motion.steer[n] = before[n].steer;
     if (!(speed > 1e-9)) continue;
-    double angle = std::atan2(v.y, v.x), sign = 1;
+    double angle = elementary::atan2(v.y, v.x), sign = 1;
     if (angle > pi / 2) angle -= pi, sign = -1;
     if (angle < -pi / 2) angle += pi, sign = -1;
     motion.steer[n] = angle;

@@ -1,9 +1,10 @@
 #pragma once
 /// The ground that a rover stands on, wherever it comes from.
 
-#include <cmath>
 #include <limits>
 #include <optional>
+
+#include "src/core/elementary.hpp"
 
 namespace desert_sim {
 
@@ -17,7 +18,7 @@ struct GroundPoint {
   double water_x = 0, water_y = 0;  ///< velocity of the water [m/s]
 
   /// Depth × speed of the water [m²/s].
-  double flow() const { return water * std::hypot(water_x, water_y); }
+  double flow() const { return water * elementary::hypot(water_x, water_y); }
 };
 
 /// Coordinates are those of the terrain's frame [m].

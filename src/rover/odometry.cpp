@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "kernels/field/random.hpp"
-#include "src/core/constants.hpp"
+#include "src/core/elementary.hpp"
 #include "src/core/rotation.hpp"
 #include "src/rover/rover.hpp"
 
@@ -16,9 +16,9 @@ std::array<double, 2> normal_pair(std::uint64_t seed, Purpose purpose, std::uint
   const RandomWords words = random_words(seed, purpose, static_cast<std::uint32_t>(tick),
                                          static_cast<std::uint32_t>(tick >> 32), which);
   const double unit = 1.0 / 4294967296.0;
-  const double radius = std::sqrt(-2 * std::log((words.word[0] + 0.5) * unit)),
-               turn = 2 * pi * words.word[1] * unit;
-  return {radius * std::cos(turn), radius * std::sin(turn)};
+  const double radius = std::sqrt(-2 * elementary::log((words.word[0] + 0.5) * unit));
+  const elementary::UnitVector direction = elementary::direction_deg(360 * (words.word[1] * unit));
+  return {radius * direction.x, radius * direction.y};
 }
 
 }  // namespace
@@ -31,7 +31,8 @@ void Rover::dead_reckon() {
   if (rover_.odometry_noise > 0) {
     const std::array<double, 2> noise = normal_pair(rover_.seed, Purpose::rover_odometry, state_.ticks, 0);
     forward += noise[0] * rover_.odometry_noise * std::sqrt(std::abs(forward));
-    turn += noise[1] * rover_.odometry_noise * std::sqrt(std::hypot(forward, sideways) + std::abs(turn));
+    turn +=
+        noise[1] * rover_.odometry_noise * std::sqrt(elementary::hypot(forward, sideways) + std::abs(turn));
   }
   o.roll = state_.pose.roll;
   o.pitch = state_.pose.pitch;

@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "src/core/constants.hpp"
+#include "src/core/elementary.hpp"
 #include "src/core/error.hpp"
 #include "src/core/number_text.hpp"
 
@@ -221,10 +222,11 @@ void Rover::go(const GroundSource& ground) {
   state_.slip = turns(motion) ? slip_on(motion, under, ground) : 0;
   const DriveCommand body = body_motion(motion, under, state_.slip);
   RoverState next = state_;
-  const double yaw = state_.pose.yaw + body.yaw_rate * internal_step / 2;
+  const elementary::UnitVector heading =
+      elementary::direction(state_.pose.yaw + body.yaw_rate * internal_step / 2);
   const double level = internal_step / std::sqrt(1 + under.rise * under.rise);
-  next.pose.x += level * (body.forward * std::cos(yaw) - body.sideways * std::sin(yaw));
-  next.pose.y += level * (body.forward * std::sin(yaw) + body.sideways * std::cos(yaw));
+  next.pose.x += level * (body.forward * heading.x - body.sideways * heading.y);
+  next.pose.y += level * (body.forward * heading.y + body.sideways * heading.x);
   next.pose.yaw = angle_between_turns(state_.pose.yaw + body.yaw_rate * internal_step);
   if (turns(motion)) {
     const Hindrance ahead = contact_.hindrance(next, motion, ground),
@@ -250,10 +252,11 @@ void Rover::go(const GroundSource& ground) {
 /// Of all wheels together. Those that are deeper than this slip explains climb out of their holes.
 double Rover::slip_on(const WheelMotion& motion, const GroundUnderWheels& under,
                       const GroundSource& ground) const {
-  const double speed = std::hypot(motion.body.forward, motion.body.sideways);
+  const double speed = elementary::hypot(motion.body.forward, motion.body.sideways);
   const wheels::Ground mean = wheel_ground(under.mean);
   const auto slip_at = [&](double rise) {
-    return law_.longitudinal_slip(static_cast<float>(std::atan(rise)), static_cast<float>(speed), mean);
+    return law_.longitudinal_slip(static_cast<float>(elementary::atan(rise)), static_cast<float>(speed),
+                                  mean);
   };
   const float steady = slip_at(under.rise);
   double climb = 0;
@@ -273,10 +276,10 @@ DriveCommand Rover::body_motion(const WheelMotion& motion, const GroundUnderWhee
   DriveCommand body{motion.body.forward * (1 - slip), motion.body.sideways * (1 - slip),
                     motion.body.yaw_rate * (1 - slip)};
   if (rover_.steering == Steering::skid) body.yaw_rate *= 1 - rover_.skid_loss;
-  const double speed = std::hypot(body.forward, body.sideways);
+  const double speed = elementary::hypot(body.forward, body.sideways);
   if (!(speed > 0)) return body;
   const double drift =
-      law_.lateral_slip(static_cast<float>(std::atan(under.cross_rise)), wheel_ground(under.mean));
+      law_.lateral_slip(static_cast<float>(elementary::atan(under.cross_rise)), wheel_ground(under.mean));
   const double right_x = body.sideways / speed, right_y = -body.forward / speed;
   body.forward += drift * speed * right_x;
   body.sideways += drift * speed * right_y;
@@ -292,8 +295,9 @@ void Rover::turn_wheels(const WheelMotion& motion, const DriveCommand& body, con
     w.slip = 0;
     if (w.rim_speed == 0) continue;
     const Eigen::Vector3d& place = suspension_.hub_at_rest(n);
-    const double along = (body.forward - body.yaw_rate * place.y()) * std::cos(w.steer) +
-                         (body.sideways + body.yaw_rate * place.x()) * std::sin(w.steer);
+    const elementary::UnitVector steer = elementary::direction(w.steer);
+    const double along = (body.forward - body.yaw_rate * place.y()) * steer.x +
+                         (body.sideways + body.yaw_rate * place.x()) * steer.y;
     w.slip = std::clamp(1 - along / w.rim_speed, -1.0, 1.0);
     const double way = w.rim_speed * internal_step;
     w.angle = angle_between_turns(w.angle + way / rover_.wheel_radius);
@@ -312,7 +316,8 @@ void Rover::note_ways(const WheelMotion& motion, const DriveCommand& body) {
   double rims = 0;
   for (int n = 0; n < suspension_.wheels(); ++n)
     rims += std::abs(motion.rim_speed[static_cast<std::size_t>(n)]) / suspension_.wheels();
-  const double way = rims * internal_step, made = std::hypot(body.forward, body.sideways) * internal_step;
+  const double way = rims * internal_step,
+               made = elementary::hypot(body.forward, body.sideways) * internal_step;
   state_.way_commanded += way;
   state_.way_made += made;
   if (state_.slip >= rover_.stuck_slip) {
@@ -344,7 +349,7 @@ std::string Rover::why_stuck(const GroundUnderWheels& under) const {
   std::ostringstream text;
   text.precision(3);
   text << "its wheels turn and make no way: slip " << state_.slip << ", sunk by " << deepest << " m, slope "
-       << std::atan(under.rise) * 180 / pi << " deg, looseness " << *under.mean.looseness << ", sand "
+       << elementary::atan_deg(under.rise) << " deg, looseness " << *under.mean.looseness << ", sand "
        << under.mean.sand_depth << " m";
   return text.str();
 }

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "src/core/constants.hpp"
+#include "src/core/elementary.hpp"
 #include "src/core/error.hpp"
 #include "src/core/number_text.hpp"
 
@@ -28,7 +28,7 @@ double length_of(const RoverParameters& p) { return std::max(p.wheelbase, p.body
 std::string why_it_stops(Rover rover, double speed, double way, const GroundSource& ground) {
   const RoverState start = rover.state();
   const auto made = [&] {
-    return std::hypot(rover.state().pose.x - start.pose.x, rover.state().pose.y - start.pose.y);
+    return elementary::hypot(rover.state().pose.x - start.pose.x, rover.state().pose.y - start.pose.y);
   };
   const double time = std::min(longest_test, 4 * way / std::abs(speed));
   rover.drive({speed, 0, 0}, time);
@@ -44,7 +44,7 @@ std::string why_it_stops(Rover rover, double speed, double way, const GroundSour
 /// Whether the ground is known, dry, unoccupied and gentle at all points within `room` [m], on a raster.
 /// Cheaper than start_problem().
 bool is_free_ground(const RoverParameters& p, double x, double y, double room, const GroundSource& ground) {
-  const double half = length_of(p) / 2, steepest = std::tan(gentle_deg * pi / 180);
+  const double half = length_of(p) / 2, steepest = elementary::tan_deg(gentle_deg);
   const int count = static_cast<int>(room / (2 * half));
   for (int j = -count; j <= count; ++j) {
     for (int i = -count; i <= count; ++i) {
@@ -52,7 +52,7 @@ bool is_free_ground(const RoverParameters& p, double x, double y, double room, c
       const auto east = ground.elevation(px + half, py), west = ground.elevation(px - half, py),
                  north = ground.elevation(px, py + half), south = ground.elevation(px, py - half);
       if (!east || !west || !north || !south) return false;
-      if (std::hypot(*east - *west, *north - *south) > steepest * 2 * half) return false;
+      if (elementary::hypot(*east - *west, *north - *south) > steepest * 2 * half) return false;
       const GroundPoint point = ground.at(px, py);
       if (point.obstacle > 0 || point.water > p.max_water || point.flow() > p.max_flow) return false;
     }
@@ -69,7 +69,8 @@ std::optional<StartPlace> nearest_with_room(const Rover& rover, const StartArea&
   std::optional<StartPlace> best;
   double nearest = std::numeric_limits<double>::infinity();
   const auto consider = [&](int i, int j) {
-    const double distance = spacing * std::hypot(i, j), x = area.x + spacing * i, y = area.y + spacing * j;
+    const double distance = spacing * elementary::hypot(i, j), x = area.x + spacing * i,
+                 y = area.y + spacing * j;
     if (std::abs(i) > across || std::abs(j) > along || distance >= nearest) return;
     if (!is_free_ground(rover.parameters(), x, y, room, ground)) return;
     if (!start_problem(rover, x, y, yaw, ground).empty()) return;
@@ -123,7 +124,7 @@ Start choose_start(const Rover& rover, const StartArea& area, std::optional<doub
   }
   const std::optional<StartPlace> free = nearest_start(rover, area, yaw, ground);
   if (!free) return {asked, "the terrain has no place from which it could drive ahead and back", true};
-  const double distance = std::hypot(free->x - area.x, free->y - area.y);
+  const double distance = elementary::hypot(free->x - area.x, free->y - area.y);
   if (distance == 0) return {*free, "", false};
   return {*free, "the nearest free ground, " + number_text(distance) + " m from the middle of the terrain",
           false};

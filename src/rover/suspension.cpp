@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "src/core/constants.hpp"
+#include "src/core/elementary.hpp"
 #include "src/core/rotation.hpp"
 
 namespace desert_sim {
@@ -12,7 +13,7 @@ namespace {
 
 /// About the y axis: positive angles turn the nose down.
 Eigen::Vector3d turned_down(const Eigen::Vector3d& p, double angle) {
-  const double c = std::cos(angle), s = std::sin(angle);
+  const auto [c, s] = elementary::direction(angle);
   return {c * p.x() + s * p.z(), p.y(), c * p.z() - s * p.x()};
 }
 
@@ -21,8 +22,9 @@ Eigen::Vector3d turned_down(const Eigen::Vector3d& p, double angle) {
 double angle_between_turns(double angle) { return angle - 2 * pi * std::round(angle / (2 * pi)); }
 
 Eigen::Matrix3d rotation_of(const Pose& pose) {
-  const double cr = std::cos(pose.roll), sr = std::sin(pose.roll), cp = std::cos(pose.pitch),
-               sp = std::sin(pose.pitch), cy = std::cos(pose.yaw), sy = std::sin(pose.yaw);
+  const auto [cr, sr] = elementary::direction(pose.roll);
+  const auto [cp, sp] = elementary::direction(pose.pitch);
+  const auto [cy, sy] = elementary::direction(pose.yaw);
   Eigen::Matrix3d matrix;
   matrix << cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr,  //
       sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr,        //

@@ -1,7 +1,5 @@
 #include "src/ros/planner/planner_messages.hpp"
 
-#include <tf2/LinearMath/Matrix3x3.h>
-#include <tf2/LinearMath/Quaternion.h>
 #include <tf2_geometry_msgs/tf2_geometry_msgs.h>
 
 #include <algorithm>
@@ -11,6 +9,7 @@
 #include "src/client/ros_time.hpp"
 #include "src/core/error.hpp"
 #include "src/core/number_text.hpp"
+#include "src/core/rotation.hpp"
 #include "src/ros/conversion/terrain_transforms.hpp"
 
 namespace desert_sim {
@@ -18,8 +17,8 @@ namespace desert_sim {
 namespace {
 
 geometry_msgs::Quaternion quaternion(double pitch, double yaw) {
-  tf2::Quaternion q;
-  q.setRPY(0, pitch, yaw);
+  const Eigen::Quaterniond q =
+      turn_of_halves({1, 0}, elementary::direction(pitch / 2), elementary::direction(yaw / 2));
   geometry_msgs::Quaternion m;
   m.x = q.x();
   m.y = q.y();
@@ -39,23 +38,23 @@ float traversability_of(std::int8_t cost) {
   return cost == 100 ? 0.0F : std::max(1.0F - static_cast<float>(cost) / 99.0F, 0.001F);
 }
 
-/// Throws ConfigError, naming `what`, for a quaternion whose length is not 1.
-double yaw_of(const geometry_msgs::Quaternion& q, const std::string& what) {
-  const double norm = std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w);
-  if (!(std::abs(norm - 1) < 0.01))
-    throw ConfigError(what + ": the length of the quaternion is " + std::to_string(norm) + " (allowed: 1)");
-  return std::atan2(2 * (q.w * q.z + q.x * q.y), 1 - 2 * (q.y * q.y + q.z * q.z));
-}
-
 }  // namespace
 
 geometry_msgs::Quaternion yaw_quaternion(double yaw) { return quaternion(0, yaw); }
+
+double yaw_of(const geometry_msgs::Quaternion& q) {
+  return elementary::atan2(2 * (q.w * q.z + q.x * q.y), 1 - 2 * (q.y * q.y + q.z * q.z));
+}
 
 PlanarPose planar_pose(const geometry_msgs::Pose& pose, const std::string& what) {
   const geometry_msgs::Point& p = pose.position;
   if (!std::isfinite(p.x) || !std::isfinite(p.y))
     throw ConfigError(what + ": the place " + point_text(p.x, p.y) + " is not of finite numbers");
-  return {p.x, p.y, yaw_of(pose.orientation, what)};
+  const geometry_msgs::Quaternion& q = pose.orientation;
+  const double norm = std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w);
+  if (!(std::abs(norm - 1) < 0.01))
+    throw ConfigError(what + ": the length of the quaternion is " + std::to_string(norm) + " (allowed: 1)");
+  return {p.x, p.y, yaw_of(q)};
 }
 
 geometry_msgs::PoseStamped goal_in_terrain(const geometry_msgs::PoseStamped& goal, const std::string& terrain,
@@ -106,9 +105,9 @@ nav_msgs::Path path_message(const GridPath& path, const std::vector<TimedPoint>&
   for (std::size_t n = 0; n < points.size(); ++n) {
     const std::size_t a = n + 1 < points.size() || n == 0 ? n : n - 1, b = std::min(a + 1, points.size() - 1);
     const auto &p = message.poses[a].pose.position, &q = message.poses[b].pose.position;
-    const double run = std::hypot(q.x - p.x, q.y - p.y);
+    const double run = elementary::hypot(q.x - p.x, q.y - p.y);
     message.poses[n].pose.orientation =
-        run > 0 ? quaternion(-std::atan2(q.z - p.z, run), std::atan2(q.y - p.y, q.x - p.x))
+        run > 0 ? quaternion(-elementary::atan2(q.z - p.z, run), elementary::atan2(q.y - p.y, q.x - p.x))
                 : quaternion(0, 0);
   }
   return message;

@@ -15,6 +15,8 @@
 namespace desert_sim {
 
 geometry_msgs::Quaternion yaw_quaternion(double yaw);
+/// Of a quaternion whose length is 1 [rad].
+double yaw_of(const geometry_msgs::Quaternion& q);
 /// A pose seen from above. Throws ConfigError, naming `what`, for places that are not finite and quaternions
 /// whose length is not 1.
 PlanarPose planar_pose(const geometry_msgs::Pose& pose, const std::string& what);

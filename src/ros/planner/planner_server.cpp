@@ -5,7 +5,6 @@
 #include <ros/console.h>
 #include <ros/init.h>
 #include <ros/service.h>
-#include <tf2/utils.h>
 #include <tf2_geometry_msgs/tf2_geometry_msgs.h>
 
 #include <algorithm>
@@ -176,7 +175,7 @@ bool PlannerServer::pose_by_tf(PlanarPose& pose, std::string& problem) {
   }
   try {
     const auto t = transforms_.lookupTransform(terrain, setup_.base_frame(), ros::Time(0));
-    pose = {t.transform.translation.x, t.transform.translation.y, tf2::getYaw(t.transform.rotation)};
+    pose = {t.transform.translation.x, t.transform.translation.y, yaw_of(t.transform.rotation)};
     const double age = seconds_between(t.header.stamp, ros::Time::now());
     if (!std::isfinite(pose.x) || !std::isfinite(pose.y) || !std::isfinite(pose.yaw)) {
       problem = "the rover's pose is not of finite numbers";

@@ -1,9 +1,6 @@
 #include "src/ros/rover/rover_messages.hpp"
 
-#include <tf2/LinearMath/Quaternion.h>
-
 #include <algorithm>
-#include <cmath>
 
 #include "src/core/hash_text.hpp"
 #include "src/core/rotation.hpp"
@@ -15,8 +12,8 @@ namespace desert_sim {
 namespace {
 
 geometry_msgs::Quaternion quaternion(double roll, double pitch, double yaw) {
-  tf2::Quaternion q;
-  q.setRPY(roll, pitch, yaw);
+  const Eigen::Quaterniond q = turn_of_halves(
+      elementary::direction(roll / 2), elementary::direction(pitch / 2), elementary::direction(yaw / 2));
   geometry_msgs::Quaternion message;
   message.x = q.x();
   message.y = q.y();
@@ -47,7 +44,8 @@ Pose footprint(const RoverState& state) {
 /// The pose of odom in the terrain's frame at which base_link is where it is.
 Pose odom_in_terrain(const RoverState& state, double wheel_radius) {
   const Pose &o = state.odometry, &p = state.pose;
-  const double yaw = p.yaw - o.yaw, c = std::cos(yaw), s = std::sin(yaw);
+  const double yaw = p.yaw - o.yaw;
+  const auto [c, s] = elementary::direction(yaw);
   return {p.x - (c * o.x - s * o.y), p.y - (s * o.x + c * o.y), p.z - wheel_radius - o.z, 0, 0, yaw};
 }
 

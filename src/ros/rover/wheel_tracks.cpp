@@ -3,9 +3,9 @@
 #include <ros/console.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "include/desert_sim/client/service_call.hpp"
+#include "src/core/elementary.hpp"
 #include "src/ros/conversion/messages.hpp"
 #include "src/terrain/map_layers.hpp"
 
@@ -45,7 +45,7 @@ void WheelTracks::follow(const Rover& rover, double cell_size) {
     const auto i = static_cast<std::size_t>(n);
     const Eigen::Vector3d hub = rover.suspension().hub(n, rover.state());
     std::optional<Mark>& mark = marks_[i];
-    const double way = mark ? std::hypot(hub.x() - mark->x, hub.y() - mark->y) : 0;
+    const double way = mark ? elementary::hypot(hub.x() - mark->x, hub.y() - mark->y) : 0;
     if (!mark || way > 10 * setup_.node.track_spacing) mark = Mark{hub.x(), hub.y()};  // it was carried there
     if (way < setup_.node.track_spacing) continue;
     const double sunk = rover.state().wheels[i].sunk;
@@ -66,7 +66,7 @@ void WheelTracks::follow(const Rover& rover, double cell_size) {
 /// It ends a wheel's radius behind the hub, so that a wheel does not sink into its own stroke.
 EditTerrainRequest WheelTracks::stroke(const Mark& from, const Mark& to, double sunk,
                                        double cell_size) const {
-  const double way = std::hypot(to.x - from.x, to.y - from.y), width = setup_.rover.wheel_width;
+  const double way = elementary::hypot(to.x - from.x, to.y - from.y), width = setup_.rover.wheel_width;
   const double back = std::min(setup_.rover.wheel_radius / way, 1.0);
   const double bx = (to.x - from.x) * back, by = (to.y - from.y) * back;
   EditTerrainRequest request;

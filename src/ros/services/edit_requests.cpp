@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "src/core/did_you_mean.hpp"
+#include "src/core/elementary.hpp"
 #include "src/io/raster_loader.hpp"
 #include "src/ros/services/request_fields.hpp"
 #include "src/ros/services/requests.hpp"
@@ -22,10 +23,10 @@ namespace {
 /// Throws if a frame is tilted so much that a direction in it has no meaning in the terrain's. (Points are
 /// projected.)
 void check_tilt(const tf2::Transform& transform, const std::string& frame) {
-  const double up = (transform.getBasis() * tf2::Vector3(0, 0, 1)).z();
-  if (up >= std::cos(45 / degrees_per_radian)) return;
-  throw ConfigError("frame " + in_quotes(frame) + " is tilted by " +
-                    std::to_string(std::acos(std::max(-1.0, up)) * degrees_per_radian) +
+  const tf2::Vector3 up = transform.getBasis() * tf2::Vector3(0, 0, 1);
+  const double tilt_deg = elementary::atan2_deg(elementary::hypot(up.x(), up.y()), up.z());
+  if (tilt_deg <= 45) return;
+  throw ConfigError("frame " + in_quotes(frame) + " is tilted by " + std::to_string(tilt_deg) +
                     " deg against the terrain's frame, so angle_deg is undefined (allowed: at most 45 deg)");
 }
 

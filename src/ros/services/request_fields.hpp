@@ -14,12 +14,11 @@
 #include <vector>
 
 #include "src/core/did_you_mean.hpp"
+#include "src/core/elementary.hpp"
 #include "src/core/error.hpp"
 #include "src/core/joined.hpp"
 
 namespace desert_sim {
-
-constexpr double degrees_per_radian = 180 / 3.14159265358979323846;
 
 inline void require_finite(double value, const std::string& name) {
   if (std::isfinite(value)) return;
@@ -72,9 +71,9 @@ void require_left_out(const Field& field, const std::string& name, const std::st
 
 /// A direction in another frame as a direction in the terrain's, both seen from above [deg].
 inline double direction_in_terrain(double angle_deg, const tf2::Transform& transform) {
-  const tf2::Vector3 axis = transform.getBasis() * tf2::Vector3(std::cos(angle_deg / degrees_per_radian),
-                                                                std::sin(angle_deg / degrees_per_radian), 0);
-  return std::atan2(axis.y(), axis.x()) * degrees_per_radian;
+  const elementary::UnitVector along = elementary::direction_deg(angle_deg);
+  const tf2::Vector3 axis = transform.getBasis() * tf2::Vector3(along.x, along.y, 0);
+  return elementary::atan2_deg(axis.y(), axis.x());
 }
 
 }  // namespace desert_sim

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "src/core/elementary.hpp"
+
 namespace desert_sim {
 
 const std::vector<Layer>& sampled_layers() {
@@ -83,7 +85,7 @@ TerrainSample TerrainSampler::at(double x, double y) const {
   sample.normal.x = -dz_dx / length;
   sample.normal.y = -dz_dy / length;
   sample.normal.z = 1 / length;
-  sample.slope = std::atan(std::hypot(dz_dx, dz_dy));
+  sample.slope = elementary::atan(elementary::hypot(dz_dx, dz_dy));
   return sample;
 }
 

@@ -8,6 +8,7 @@
 
 #include "kernels/water/water_parameters.hpp"
 #include "src/core/did_you_mean.hpp"
+#include "src/core/elementary.hpp"
 #include "src/core/joined.hpp"
 #include "src/ros/services/request_fields.hpp"
 #include "src/ros/services/requests.hpp"
@@ -33,8 +34,8 @@ command::SetWind wind_command(const SetWindRequest& request) {
   require_finite(request.vector.y, "vector.y");
   if (!(request.vector.z == 0))
     throw ConfigError("vector.z: " + std::to_string(request.vector.z) + " must be 0: the wind is horizontal");
-  command.speed = to_float(std::hypot(request.vector.x, request.vector.y));
-  command.direction_deg = to_float(std::atan2(request.vector.y, request.vector.x) * degrees_per_radian);
+  command.speed = to_float(elementary::hypot(request.vector.x, request.vector.y));
+  command.direction_deg = to_float(elementary::atan2_deg(request.vector.y, request.vector.x));
   return command;
 }
 
@@ -51,8 +52,8 @@ command::SetWind cmd_wind_command(const geometry_msgs::Vector3Stamped& message,
                       std::to_string(wind.z()) + " m/s and must be 0: the wind is horizontal");
   command::SetWind command;
   command.stroke = cmd_wind_stroke;
-  command.speed = to_float(std::hypot(wind.x(), wind.y()));
-  command.direction_deg = to_float(std::atan2(wind.y(), wind.x()) * degrees_per_radian);
+  command.speed = to_float(elementary::hypot(wind.x(), wind.y()));
+  command.direction_deg = to_float(elementary::atan2_deg(wind.y(), wind.x()));
   return command;
 }
 

@@ -1,8 +1,6 @@
 #include "src/rover/sensors/depth_camera.hpp"
 
-#include <cmath>
-
-#include "src/core/constants.hpp"
+#include "src/core/elementary.hpp"
 
 namespace desert_sim {
 
@@ -15,7 +13,7 @@ DepthCameraParameters checked(const DepthCameraParameters& p, const SensorMediaP
 }
 
 double focal_length_of(const DepthCameraParameters& p) {
-  return 0.5 * p.width / std::tan(static_cast<double>(p.fov_deg) * pi / 360);
+  return 0.5 * p.width / elementary::tan_deg(0.5 * static_cast<double>(p.fov_deg));
 }
 
 /// In the body's frame, with a length that makes the distance the depth.

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <sstream>
 
-#include "src/core/constants.hpp"
+#include "src/core/elementary.hpp"
 #include "src/core/error.hpp"
 
 namespace desert_sim {
@@ -41,11 +41,11 @@ std::vector<beams::Vec3> directions_of(const LidarParameters& p, const std::vect
   directions.reserve(angles.size() * static_cast<std::size_t>(p.columns));
   for (const double angle : angles)
     for (int column = 0; column < p.columns; ++column) {
-      const double elevation = angle * pi / 180,
-                   azimuth = (first + sector * (column + 0.5) / p.columns) * pi / 180;
-      directions.push_back({static_cast<float>(std::cos(elevation) * std::cos(azimuth)),
-                            static_cast<float>(std::cos(elevation) * std::sin(azimuth)),
-                            static_cast<float>(std::sin(elevation))});
+      const elementary::UnitVector up = elementary::direction_deg(angle),
+                                   level =
+                                       elementary::direction_deg(first + sector * (column + 0.5) / p.columns);
+      directions.push_back(
+          {static_cast<float>(up.x * level.x), static_cast<float>(up.x * level.y), static_cast<float>(up.y)});
     }
   return directions;
 }

@@ -3,20 +3,17 @@
 #include <cmath>
 #include <sstream>
 
-#include "src/core/constants.hpp"
+#include "src/core/elementary.hpp"
 #include "src/core/error.hpp"
 #include "src/core/rotation.hpp"
 
 namespace desert_sim {
 
 SensorPose pose_from_angles(double x, double y, double z, double roll_deg, double pitch_deg, double yaw_deg) {
-  const double half = pi / 360;
-  const double sr = std::sin(roll_deg * half), cr = std::cos(roll_deg * half);
-  const double sp = std::sin(pitch_deg * half), cp = std::cos(pitch_deg * half);
-  const double sy = std::sin(yaw_deg * half), cy = std::cos(yaw_deg * half);
-  return {{x, y, z},
-          {cr * cp * cy + sr * sp * sy, sr * cp * cy - cr * sp * sy, cr * sp * cy + sr * cp * sy,
-           cr * cp * sy - sr * sp * cy}};
+  using elementary::direction_deg;
+  return {
+      {x, y, z},
+      turn_of_halves(direction_deg(roll_deg / 2), direction_deg(pitch_deg / 2), direction_deg(yaw_deg / 2))};
 }
 
 SensorPose compose(const SensorPose& outer, const SensorPose& inner) {
