@@ -15,7 +15,6 @@
 /// The inverse without the factor 1/n is the same transform with real and imaginary parts exchanged before
 /// and after it.
 
-#include <cmath>
 #include <type_traits>
 #include <vector>
 
@@ -23,7 +22,7 @@
 #include "kernels/backend/for_each.hpp"
 #include "kernels/base/macros.hpp"
 #include "kernels/base/math.hpp"
-#include "src/core/constants.hpp"
+#include "src/core/elementary.hpp"
 
 namespace desert_sim {
 
@@ -128,9 +127,8 @@ struct LineTransform {
   std::vector<Complex> roots() const {
     std::vector<Complex> table(static_cast<std::size_t>(length));
     for (int j = 0; j < length; ++j) {
-      const double angle = -2 * pi * j / length;
-      table[static_cast<std::size_t>(j)] = {static_cast<float>(std::cos(angle)),
-                                            static_cast<float>(std::sin(angle))};
+      const elementary::UnitVector root = elementary::direction_deg(-360.0 * j / length);
+      table[static_cast<std::size_t>(j)] = {static_cast<float>(root.x), static_cast<float>(root.y)};
     }
     return table;
   }

@@ -2,12 +2,12 @@
 /// The Fourier modes of a coarse grid along one of its axes, and how much of them averaging onto that grid
 /// and interpolating back leaves. On the host: transfer functions are tabulated once.
 
-#include <cmath>
 #include <vector>
 
 #include "kernels/backend/buffer.hpp"
 #include "kernels/wind/coarse_wind.hpp"
 #include "src/core/constants.hpp"
+#include "src/core/elementary.hpp"
 
 namespace desert_sim::wind {
 
@@ -38,11 +38,11 @@ struct ModesOfAxis {
   /// What the box filter and the interpolation back by quadratic B-splines leave of a mode.
   double kept(int i) const {
     if (ratio <= 1 || i == 0) return 1;
-    const double half = 0.5 * wavenumber(i), box = std::sin(half * ratio) / (half * ratio);
-    return std::sin(half * ratio) / (ratio * std::sin(half)) * box * box * box;
+    const double half = 0.5 * wavenumber(i), box = elementary::sin(half * ratio) / (half * ratio);
+    return elementary::sin(half * ratio) / (ratio * elementary::sin(half)) * box * box * box;
   }
   double gaussian(int i, double sigma) const {
-    return std::exp(-0.5 * sigma * sigma * wavenumber(i) * wavenumber(i));
+    return elementary::exp(-0.5 * sigma * sigma * wavenumber(i) * wavenumber(i));
   }
 };
 

@@ -6,11 +6,12 @@
 #include "kernels/wind/coarse_modes.hpp"
 #include "kernels/wind/shear_stress.hpp"
 #include "kernels/wind/surface_wind.hpp"
+#include "src/core/elementary.hpp"
 
 namespace desert_sim::shear_stress {
 
 double shear_velocity_per_wind(const ShearStressParameters& p) {
-  return von_karman / std::log(static_cast<double>(p.wind_height) / p.roughness_length);
+  return von_karman / elementary::log(static_cast<double>(p.wind_height) / p.roughness_length);
 }
 
 namespace {

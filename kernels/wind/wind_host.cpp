@@ -4,7 +4,7 @@
 
 #include "kernels/wind/coarse_modes.hpp"
 #include "kernels/wind/wind_laws.hpp"
-#include "src/core/constants.hpp"
+#include "src/core/elementary.hpp"
 
 namespace desert_sim::wind {
 
@@ -33,8 +33,9 @@ struct WindModes : ModesOfAxis {
     for (int i = 0; i < n; ++i) {
       if (nyquist(i)) continue;
       const double smooth = gaussian(i, sigma) / (kept(i) * n);
-      table[static_cast<std::size_t>(i)] = {static_cast<float>(smooth),
-                                            static_cast<float>(smooth * std::sin(wavenumber(i)) / cell_size)};
+      table[static_cast<std::size_t>(i)] = {
+          static_cast<float>(smooth),
+          static_cast<float>(smooth * elementary::sin(wavenumber(i)) / cell_size)};
     }
     return table;
   }
