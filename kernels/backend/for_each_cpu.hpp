@@ -18,7 +18,7 @@ namespace desert_sim {
 // ---- Loops for several sets of instructions: instruction_set.hpp
 
 template <class Work>
-void with_baseline(const Work& work) {
+void with_generic_instructions(const Work& work) {
   work();
 }
 template <class Work>
@@ -41,7 +41,7 @@ void with_wide_instructions(const Work& work) {
     if (instruction_set == InstructionSet::avx512) return with_avx512_masks(work);
   if constexpr (is_compiled(InstructionSet::avx2))
     if (instruction_set == InstructionSet::avx2) return with_avx2(work);
-  if constexpr (is_compiled(InstructionSet::baseline)) with_baseline(work);
+  if constexpr (is_compiled(InstructionSet::generic)) with_generic_instructions(work);
 }
 /// The same with the widest vectors, which make sweeps of tiles a third faster: these are nothing but
 /// arithmetic.
@@ -51,7 +51,7 @@ void with_widest_instructions(const Work& work) {
     if (instruction_set == InstructionSet::avx512) return with_avx512(work);
   if constexpr (is_compiled(InstructionSet::avx2))
     if (instruction_set == InstructionSet::avx2) return with_avx2(work);
-  if constexpr (is_compiled(InstructionSet::baseline)) with_baseline(work);
+  if constexpr (is_compiled(InstructionSet::generic)) with_generic_instructions(work);
 }
 
 /// One thread as the team that works on a tile.

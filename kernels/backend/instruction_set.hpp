@@ -1,7 +1,6 @@
 #pragma once
 /// The sets of instructions that loops on the CPU are compiled for, and which one is used (for_each_cpu.hpp).
 
-#include <algorithm>
 #include <cstdlib>
 #include <string>
 
@@ -10,12 +9,12 @@ namespace desert_sim {
 // ---- Instruction sets: inner loops are compiled for several ones, and the widest that the processor has is
 // chosen at run time. The compiler fuses no multiplication with an addition on any of them
 // (-ffp-contract=off), so all give the same bits. An explicit fused() is one instruction on all but the
-// baseline.
+// generic one.
 
-enum class InstructionSet { baseline, avx2, avx512 };
+enum class InstructionSet { generic, avx2, avx512 };
 
 constexpr const char* instruction_set_name(InstructionSet set) {
-  return set == InstructionSet::baseline ? "baseline" : set == InstructionSet::avx2 ? "avx2" : "avx512";
+  return set == InstructionSet::generic ? "generic" : set == InstructionSet::avx2 ? "avx2" : "avx512";
 }
 
 /// Whether loops are compiled for it: with DESERT_PORTABLE=OFF for one set alone.
@@ -23,40 +22,46 @@ constexpr bool is_compiled(InstructionSet set) {
 #if defined(DESERT_ONLY_INSTRUCTIONS)
   return set == InstructionSet::DESERT_ONLY_INSTRUCTIONS;
 #else
-  return set == InstructionSet::baseline || set == InstructionSet::avx2 || set == InstructionSet::avx512;
+  return set == InstructionSet::generic || set == InstructionSet::avx2 || set == InstructionSet::avx512;
 #endif
 }
 
 inline InstructionSet widest_instructions() {
 #if defined(__x86_64__)
   __builtin_cpu_init();
-  if (!__builtin_cpu_supports("avx2") || !__builtin_cpu_supports("fma")) return InstructionSet::baseline;
+  if (!__builtin_cpu_supports("avx2") || !__builtin_cpu_supports("fma")) return InstructionSet::generic;
   for (bool has : {__builtin_cpu_supports("avx512f") != 0, __builtin_cpu_supports("avx512dq") != 0,
                    __builtin_cpu_supports("avx512bw") != 0, __builtin_cpu_supports("avx512vl") != 0})
     if (!has) return InstructionSet::avx2;
   return InstructionSet::avx512;
 #else
-  return InstructionSet::baseline;
+  return InstructionSet::generic;
 #endif
 }
-/// The widest set that the processor has, or the one that the environment's variable DESERT_INSTRUCTIONS
-/// names (oldest: the baseline, or avx2) if that is less: for benchmarks of what a set brings.
+/// The set that the environment's variable DESERT_CPU names (generic, avx2, avx512, or native: the widest
+/// that the processor has, which is the default). All give the same bits; tests and benchmarks choose one.
 inline InstructionSet chosen_instructions() {
-  const InstructionSet widest = widest_instructions();
-  const char* const named = std::getenv("DESERT_INSTRUCTIONS");
-  if (!named) return widest;
-  if (std::string(named) == "oldest") return InstructionSet::baseline;
-  return std::string(named) == "avx2" ? std::min(widest, InstructionSet::avx2) : widest;
+  const char* const variable = std::getenv("DESERT_CPU");
+  const std::string named = variable ? variable : "native";
+  for (InstructionSet set : {InstructionSet::generic, InstructionSet::avx2, InstructionSet::avx512})
+    if (named == instruction_set_name(set)) return set;
+  return widest_instructions();
 }
 inline const InstructionSet instruction_set = chosen_instructions();
 
 /// Why the loops of this build cannot run here; empty if they can.
 inline std::string problem_with_instructions() {
+  const char* const variable = std::getenv("DESERT_CPU");
+  const std::string named = variable ? variable : "native", set = instruction_set_name(instruction_set);
+  if (named != "native" && named != set)
+    return "DESERT_CPU: '" + named + "' is not one of generic, avx2, avx512, native";
+  if (instruction_set > widest_instructions())
+    return "DESERT_CPU: this processor does not have the instructions '" + set + "' (it has '" +
+           instruction_set_name(widest_instructions()) + "')";
   if (is_compiled(instruction_set)) return "";
-  return std::string("the loops of this build are not compiled for the instructions '") +
-         instruction_set_name(instruction_set) +
-         "', which are this processor's, or those of DESERT_INSTRUCTIONS: scripts/demo builds for the "
-         "processor that it runs on; scripts/test, or cmake with -DDESERT_PORTABLE=ON, builds for all";
+  return "the loops of this build are not compiled for the instructions '" + set +
+         "', which are this processor's, or those of DESERT_CPU: scripts/demo builds for the processor that "
+         "it runs on; scripts/test, or cmake with -DDESERT_PORTABLE=ON, builds for all";
 }
 
 #if defined(__x86_64__)
