@@ -104,8 +104,7 @@ class Exec {
 
   /// A complex 2-D transform of width × height values (x fastest), in place and unnormalised, of `fields`
   /// fields at once.
-  virtual std::unique_ptr<Fft> make_fft(int width, int height, int fields = 1,
-                                        FftMethod method = FftMethod::library) = 0;
+  virtual std::unique_ptr<Fft> make_fft(int width, int height, int fields, FftMethod method) = 0;
   /// Shared memory available to a kernel that transforms lines by itself (wind::by_lines()) [bytes]; 0 if the
   /// device does not support such kernels.
   virtual std::size_t memory_for_lines() const { return 0; }
@@ -173,6 +172,8 @@ class CudaExec final : public Exec {
   bool can_record_loops() const override;
   std::unique_ptr<Fft> make_fft(int width, int height, int fields, FftMethod method) override;
   std::size_t memory_for_lines() const override;
+  /// The most shared memory that a thread block may ask for [bytes].
+  std::size_t shared_memory_of_a_block() const;
 
   /// A 64-bit word on the device for results of reductions, with a pinned mirror on the host.
   long long* reduction_word() const { return reduction_word_; }

@@ -1,11 +1,9 @@
 #include <cuda_runtime.h>
-#include <cufft.h>
 
 #include <cstdio>
 #include <cstring>
 #include <utility>
 
-#include "kernels/backend/fft.hpp"
 #include "kernels/backend/for_each_cuda.cuh"
 #include "src/core/error.hpp"
 #include "src/core/log.hpp"
@@ -13,39 +11,6 @@
 namespace desert_sim {
 
 namespace {
-
-void check_cufft(cufftResult status, const char* what) {
-  if (status != CUFFT_SUCCESS)
-    throw CudaError(std::string("cuFFT: ") + what + ": error " + std::to_string(status));
-}
-
-class CufftTransform final : public Fft {
- public:
-  CufftTransform(cudaStream_t stream, int width, int height, int fields) : height_(height) {
-    int size[] = {height, width};
-    const int values = width * height;
-    check_cufft(cufftPlanMany(&plan_, 2, size, nullptr, 1, values, nullptr, 1, values, CUFFT_C2C, fields),
-                "plan");
-    check_cufft(cufftSetStream(plan_, stream), "stream");
-  }
-  ~CufftTransform() override { cufftDestroy(plan_); }
-  void forward(Complex* values) override { execute(values, CUFFT_FORWARD); }
-  void inverse(Complex* values) override { execute(values, CUFFT_INVERSE); }
-  int rows_given() const override { return height_; }
-  std::size_t bytes() const override {
-    std::size_t bytes = 0;
-    check_cufft(cufftGetSize(plan_, &bytes), "size");
-    return bytes;
-  }
-
- private:
-  void execute(Complex* values, int direction) {
-    auto* v = reinterpret_cast<cufftComplex*>(values);
-    check_cufft(cufftExecC2C(plan_, v, v, direction), "transform");
-  }
-  int height_;
-  cufftHandle plan_ = 0;
-};
 
 cudaStream_t as_stream(void* stream) { return static_cast<cudaStream_t>(stream); }
 cudaEvent_t as_event(void* event) { return static_cast<cudaEvent_t>(event); }
@@ -307,22 +272,25 @@ void CudaExec::repeat_while(const long long* go_on, const std::function<void()>&
   Exec::repeat_while(go_on, body);
 }
 
-std::size_t CudaExec::memory_for_lines() const {
-  const auto ask = [](cudaDeviceAttr what) {
-    int device = 0, value = 0;
-    check_cuda(cudaGetDevice(&device), "asking for the device");
-    check_cuda(cudaDeviceGetAttribute(&value, what, device), "asking for the device's limits");
-    return value;
-  };
-  // Cooperative kernels in graphs, with __grid_constant__ parameters, need at least these versions.
-  if (CUDART_VERSION < 12000 || ask(cudaDevAttrComputeCapabilityMajor) < 7 ||
-      !ask(cudaDevAttrCooperativeLaunch))
-    return 0;
-  return static_cast<std::size_t>(ask(cudaDevAttrMaxSharedMemoryPerBlockOptin));
+namespace {
+int limit_of_device(cudaDeviceAttr what) {
+  int device = 0, value = 0;
+  check_cuda(cudaGetDevice(&device), "asking for the device");
+  check_cuda(cudaDeviceGetAttribute(&value, what, device), "asking for the device's limits");
+  return value;
+}
+}  // namespace
+
+std::size_t CudaExec::shared_memory_of_a_block() const {
+  return static_cast<std::size_t>(limit_of_device(cudaDevAttrMaxSharedMemoryPerBlockOptin));
 }
 
-std::unique_ptr<Fft> CudaExec::make_fft(int width, int height, int fields, FftMethod) {
-  return std::make_unique<CufftTransform>(as_stream(stream_), width, height, fields);
+std::size_t CudaExec::memory_for_lines() const {
+  // Cooperative kernels in graphs, with __grid_constant__ parameters, need at least these versions.
+  if (CUDART_VERSION < 12000 || limit_of_device(cudaDevAttrComputeCapabilityMajor) < 7 ||
+      !limit_of_device(cudaDevAttrCooperativeLaunch))
+    return 0;
+  return shared_memory_of_a_block();
 }
 
 long long CudaExec::read_reduction_word() {

@@ -11,13 +11,21 @@ struct alignas(8) Complex {
   float re, im;
 };
 
-/// library: FFTW on a CPU, cuFFT on a GPU.
-/// lines: on a CPU line by line, by all threads, where the lengths suit (LineTransform::supports_length), and
-/// else by the library. For the small grids of the wind of hops FFTW is fast enough, and keeps its bits.
-/// lines_of_mirrored_rows: likewise; the second half of the rows mirrors the first, as on a terrain that is
-/// open in the north and south (row j is row height − 1 − j), and of an inverse transform only the first half
-/// is wanted.
-enum class FftMethod { library, lines, lines_of_mirrored_rows };
+/// library: FFTW on a CPU, cuFFT on a GPU, whose results differ in their last digits.
+/// The others go line by line (LineTransform), with the same bits on all machines. The order of the axes is
+/// that of a forward transform; the inverse has the other one.
+/// mirrored_rows_first: the second half of the rows mirrors the first, as on a terrain that is open in the
+/// north and south (row j is row height − 1 − j), and of an inverse transform only the first half is wanted.
+enum class FftMethod { library, rows_first, mirrored_rows_first, columns_first };
+
+/// The longest axis that is transformed by lines.
+constexpr int longest_line = 4096;
+
+/// The method for what enters the state of a simulation: `by_lines` where both axes are short enough. It does
+/// not ask which machine this is.
+constexpr FftMethod method_of_states(int width, int height, FftMethod by_lines) {
+  return width <= longest_line && height <= longest_line ? by_lines : FftMethod::library;
+}
 
 class Fft {
  public:

@@ -9,7 +9,7 @@
 
 #include "kernels/backend/fft.hpp"
 #include "kernels/backend/for_each_cpu.hpp"
-#include "kernels/backend/line_transform.hpp"
+#include "kernels/backend/line_block.hpp"
 #include "src/core/error.hpp"
 
 namespace desert_sim {
@@ -25,8 +25,7 @@ std::mutex& planner() {
 }
 
 /// Transforms each field with one thread, however many the Exec has: FFTW's plans for other numbers of
-/// threads may add in another order, and the hash of a run must not depend on that. The wind's grid is
-/// coarse, so this costs little.
+/// threads may add in another order, and the hash of a run must not depend on that.
 class FftwTransform final : public Fft {
  public:
   FftwTransform(int width, int height, int fields, int threads)
@@ -65,81 +64,18 @@ class FftwTransform final : public Fft {
   fftwf_plan forward_ = nullptr, inverse_ = nullptr;
 };
 
-// ---- lines beside each other ----
-
-/// Lines that are transformed beside each other, as the lanes of vectors.
-constexpr int lanes = 16;
-
-/// Where value i of a lane begins. A butterfly's values are a power of two apart: without the gaps, all of
-/// them would compete for a few places of the cache.
-DESERT_HD int place(int i) { return (i + (i >> 5)) * lanes; }
-
-/// Value i of a lane, as real and imaginary parts in memory of their own.
-struct Lane {
-  float *re, *im;
-  DESERT_HD Complex get(int i) const { return {re[place(i)], im[place(i)]}; }
-  DESERT_HD void set(int i, Complex value) const {
-    re[place(i)] = value.re;
-    im[place(i)] = value.im;
-  }
-};
-
-/// `lanes` lines of up to `longest` values, and room for those of the next stage.
-class LineBlock {
- public:
-  explicit LineBlock(int longest) : half_(static_cast<std::size_t>(place(longest + 8))), memory_(4 * half_) {}
-
-  DESERT_HD Lane lane(int n, bool next = false) {
-    float* const re = memory_.data() + (next != swapped_ ? 2 * half_ : 0) + n;
-    return {re, re + half_};
-  }
-  /// Values `half` … 2 half − 1 of each line become the mirror image of its first half.
-  DESERT_HD void mirror(int half) {
-    const Lane lines = lane(0);
-    for (int i = 0; i < half; ++i)
-      for (float* const part : {lines.re, lines.im})
-        std::copy_n(part + place(i), lanes, part + place(2 * half - 1 - i));
-  }
-  DESERT_HD void transform(const LineTransform& transform, const Complex* roots) {
-    for (int s = 0; s < transform.count; ++s) {
-      const LineTransform::Stage& stage = transform.stages[s];
-      const Lane in = lane(0), out = lane(0, true);
-      transform.with_radix(stage, [&](auto radix, auto turned) DESERT_INLINE {
-        for (int b = 0; b < transform.length / radix; ++b) {
-          const LineTransform::Butterfly<radix> butterfly(transform, stage, b, roots);
-#pragma omp simd
-          for (int n = 0; n < lanes; ++n)
-            run<turned>(butterfly, Lane{in.re + n, in.im + n}, Lane{out.re + n, out.im + n});
-        }
-      });
-      swapped_ = !swapped_;
-    }
-  }
-
- private:
-  /// A function of its own, because what is declared in a loop over lanes is not kept in registers.
-  template <bool turned, int radix>
-  DESERT_HD static void run(const LineTransform::Butterfly<radix>& butterfly, Lane in, Lane out) {
-    Complex v[radix];
-    unrolled<radix>([&](auto q) DESERT_INLINE { v[q] = in.get(butterfly.from + q * butterfly.from_stride); });
-    butterfly.template run<turned>(v);
-    unrolled<radix>([&](auto q) DESERT_INLINE { out.set(butterfly.to + q * butterfly.to_stride, v[q]); });
-  }
-
-  std::size_t half_;
-  std::vector<float> memory_;
-  bool swapped_ = false;
-};
+// ---- lines ----
 
 /// All lines along one axis, by all threads. The arithmetic of a line does not depend on which thread has it,
 /// nor on its lane, so that the bits do not depend on the number of threads.
 class LinesTransform final : public Fft {
  public:
-  LinesTransform(int width, int height, int fields, bool mirrored_rows, int threads)
+  LinesTransform(int width, int height, int fields, FftMethod method, int threads)
       : width_(width),
         height_(height),
         fields_(fields),
-        distinct_rows_(mirrored_rows ? height / 2 : height),
+        distinct_rows_(method == FftMethod::mirrored_rows_first ? height / 2 : height),
+        columns_first_(method == FftMethod::columns_first),
         threads_(threads),
         along_x_(LineTransform::for_length(width)),
         along_y_(LineTransform::for_length(height)),
@@ -147,17 +83,25 @@ class LinesTransform final : public Fft {
         roots_y_(along_y_.roots()) {}
 
   void forward(Complex* values) override {
-    pass(values, false, along_x_, roots_x_, {distinct_rows_, width_, 1, width_, width_});
-    pass(values, false, along_y_, roots_y_, {width_, 1, width_, distinct_rows_, height_});
+    if (columns_first_) columns(values, false, height_, height_);
+    rows(values, false);
+    if (!columns_first_) columns(values, false, distinct_rows_, height_);
   }
   /// A forward transform of values whose real and imaginary parts are exchanged.
   void inverse(Complex* values) override {
-    pass(values, true, along_y_, roots_y_, {width_, 1, width_, height_, distinct_rows_});
-    pass(values, true, along_x_, roots_x_, {distinct_rows_, width_, 1, width_, width_});
+    if (!columns_first_) columns(values, true, height_, distinct_rows_);
+    rows(values, true);
+    if (columns_first_) columns(values, true, height_, height_);
   }
   int rows_given() const override { return distinct_rows_; }
 
  private:
+  void rows(Complex* values, bool exchanged) const {
+    pass(values, exchanged, along_x_, roots_x_, {distinct_rows_, width_, 1, width_, width_});
+  }
+  void columns(Complex* values, bool exchanged, int given, int wanted) const {
+    pass(values, exchanged, along_y_, roots_y_, {width_, 1, width_, given, wanted});
+  }
   struct Lines {
     int count;
     int from_line, from_value;  ///< distances in memory from a line, and from a value, to the next
@@ -222,7 +166,9 @@ class LinesTransform final : public Fft {
     return exchanged ? Lane{lane.im, lane.re} : lane;
   }
 
-  int width_, height_, fields_, distinct_rows_, threads_;
+  int width_, height_, fields_, distinct_rows_;
+  bool columns_first_;
+  int threads_;
   LineTransform along_x_, along_y_;
   std::vector<Complex> roots_x_, roots_y_;
 };
@@ -230,11 +176,8 @@ class LinesTransform final : public Fft {
 }  // namespace
 
 std::unique_ptr<Fft> CpuExec::make_fft(int width, int height, int fields, FftMethod method) {
-  if (method == FftMethod::library || !LineTransform::supports_length(width) ||
-      !LineTransform::supports_length(height))
-    return std::make_unique<FftwTransform>(width, height, fields, threads_);
-  const bool mirrored = method == FftMethod::lines_of_mirrored_rows;
-  return std::make_unique<LinesTransform>(width, height, fields, mirrored, threads_);
+  if (method == FftMethod::library) return std::make_unique<FftwTransform>(width, height, fields, threads_);
+  return std::make_unique<LinesTransform>(width, height, fields, method, threads_);
 }
 
 }  // namespace desert_sim

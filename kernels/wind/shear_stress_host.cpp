@@ -46,8 +46,11 @@ Workspace make_workspace(Exec& exec, const Grid& grid, const ShearStressParamete
   work.coarse = wind::coarse_grid_of(grid, coarse_cells(grid.width, ratio), coarse_cells(grid.height, ratio));
   const wind::CoarseGrid& c = work.coarse;
   const auto values = static_cast<std::size_t>(c.values());
-  work.fft = exec.make_fft(c.width, c.height, 1,
-                           c.rows < c.height ? FftMethod::lines_of_mirrored_rows : FftMethod::lines);
+  // Interpolation in the outermost cells reads the row beyond the edge. Its stress is not that of the
+  // mirrored row, because the wind is not mirrored.
+  const bool half_is_enough = c.is_full() && c.rows < c.height;
+  const FftMethod by_lines = half_is_enough ? FftMethod::mirrored_rows_first : FftMethod::rows_first;
+  work.fft = exec.make_fft(c.width, c.height, 1, method_of_states(c.width, c.height, by_lines));
   for (Buffer<float>* buffer : {&work.ground, &work.lee, &work.filled})
     *buffer = Buffer<float>(exec, static_cast<std::size_t>(grid.cells()));
   work.lines = Buffer<float>(

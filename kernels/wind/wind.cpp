@@ -7,9 +7,9 @@
 
 namespace desert_sim::wind {
 
-/// Speed-up, warped wind and projected flux from the row means of the terrain, with the FFT library.
+/// Speed-up, warped wind and projected flux from the row means of the terrain, one pass after the other.
 template <class E>
-void transform_by_library(E& exec, const CoarseLaws& laws, Workspace& work) {
+void transform_pass_by_pass(E& exec, const CoarseLaws& laws, Workspace& work) {
   const Grid grid = work.coarse.transformed();
   for_each_cell(exec, grid, laws.columns);
   if (laws.response.fields() > 0) {
@@ -42,7 +42,7 @@ void coarse_wind(E& exec, const CoarseLaws& laws, const surface::Heights& height
     if (work.by_lines) transform_by_lines(exec, laws, work);
     done = work.by_lines;
   }
-  if (!done) transform_by_library(exec, laws, work);
+  if (!done) transform_pass_by_pass(exec, laws, work);
 }
 
 inline SurfaceWindInputs surface_wind_inputs(const TerrainView& t, const WindParameters& p, Vector above,

@@ -1,6 +1,6 @@
-/// All passes of wind::transform_by_library() in one cooperative kernel: the same laws, and between them the
-/// lines of the coarse grid are transformed in shared memory. The coarse grid is small (180 × 180 values for
-/// a terrain of 1024 m), and the twelve launches with the FFT library took longer than their work.
+/// All passes of wind::transform_pass_by_pass() in one cooperative kernel: the same laws, and between them
+/// the lines of the coarse grid are transformed in shared memory. The coarse grid is small (180 × 180 values
+/// for a terrain of 1024 m), and the launches of its passes take longer than their work.
 ///
 /// A thread block transforms two lines at a time. Between the stages of the table all blocks synchronise
 /// across the grid; therefore no more blocks are launched than the GPU can hold at once.

@@ -14,12 +14,13 @@ namespace {
 
 // ---- planning
 
-/// cuFFT's transforms take about as much as their values; kernels that transform lines need none, which a
-/// plan does not know.
+/// cuFFT's transforms take about as much as their values; those by lines need the roots of unity of both
+/// axes.
 class PlannedFft final : public Fft {
  public:
-  PlannedFft(int width, int height, int fields)
-      : values_(static_cast<std::size_t>(width) * height * fields) {}
+  PlannedFft(int width, int height, int fields, FftMethod method)
+      : values_(method == FftMethod::library ? static_cast<std::size_t>(width) * height * fields
+                                             : static_cast<std::size_t>(width) + height) {}
   void forward(Complex*) override { throw_error(); }
   void inverse(Complex*) override { throw_error(); }
   int rows_given() const override { throw_error(); }
@@ -43,8 +44,8 @@ class PlanningExec final : public Exec {
   void upload(void*, const void*, std::size_t) override {}
   void download(void*, const void*, std::size_t) override { throw_error(); }
   void synchronise() override {}
-  std::unique_ptr<Fft> make_fft(int width, int height, int fields, FftMethod) override {
-    return std::make_unique<PlannedFft>(width, height, fields);
+  std::unique_ptr<Fft> make_fft(int width, int height, int fields, FftMethod method) override {
+    return std::make_unique<PlannedFft>(width, height, fields, method);
   }
 
  protected:

@@ -2,6 +2,8 @@
 /// eddies before cliffs.
 #include "kernels/wind/wind.hpp"
 
+#include <string>
+
 #include "kernels/wind/echo_dunes.hpp"
 #include "kernels/wind/shear_stress.hpp"
 #include "kernels/wind/wind_features.hpp"
@@ -122,6 +124,19 @@ void update_shear_stress(StepContext& c, ProcessWorkspace* workspace) {
   });
 }
 
+/// Where the method of its transforms has another hash on each machine: method_of_states().
+template <class Flow>
+std::string warning_of_transform(const SimulationState&, const ProcessWorkspace& workspace) {
+  const Flow& flow = static_cast<const WorkspaceHolder<WindWork<Flow>>&>(workspace).work.flow;
+  const int width = flow.coarse.width, height = flow.coarse.height;
+  const bool transforms = flow.spectrum.bytes() > 0;
+  if (!transforms || method_of_states(width, height, FftMethod::rows_first) != FftMethod::library) return "";
+  return "its grid of " + std::to_string(width) + " x " + std::to_string(height) + " values is longer than " +
+         std::to_string(longest_line) +
+         " and is transformed by FFTW on a CPU and cuFFT on a GPU, so that the state hash depends on the "
+         "machine; a larger wind.coarsening or shear_stress.stress_cell makes it coarser";
+}
+
 /// What the wind over the ground depends on, whichever way it is found.
 Process surface_wind(const char* name) {
   Process p;
@@ -176,6 +191,7 @@ Process wind_process() {
                          wind::make_workspace(state.exec(), state.terrain.grid(), state.scenario.wind));
   });
   p.step = p.refresh = update_wind;
+  p.warning = warning_of_transform<wind::Workspace>;
   p.adapt = [](const SimulationState& state, ProcessWorkspace* workspace) {
     workspace_as<TurnedWindWork>(workspace).local.set_features(state);
   };
@@ -196,6 +212,7 @@ Process shear_stress_process() {
                                                              state.scenario.get<ShearStressParameters>()));
   });
   p.step = p.refresh = update_shear_stress;
+  p.warning = warning_of_transform<shear_stress::Workspace>;
   p.adapt = [](const SimulationState& state, ProcessWorkspace* workspace) {
     workspace_as<ShearStressWork>(workspace).local.set_features(state);
   };
