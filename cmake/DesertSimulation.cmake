@@ -35,8 +35,11 @@ desert_library(desert_dune_metrics SEPARATE FOLDERS src/metrics LINK PUBLIC dese
 
 desert_library(desert_rover FOLDERS src/rover LINK PUBLIC desert_core PRIVATE desert::xxhash) # rovers: no ROS
 
+# Paths: no ROS, no physics. What follows them needs OMPL, and desert_run does not.
+set(needs_ompl "/(navigator|navigator_planning|ompl_planner|pure_pursuit)\\.cpp$")
+desert_library(desert_paths FOLDERS src/planner EXCLUDE ${needs_ompl} LINK PUBLIC desert_base)
 if(TARGET desert::ompl)
-  desert_library(desert_planner FOLDERS src/planner LINK PUBLIC desert_base PRIVATE desert::ompl) # paths: no ROS, no physics
+  desert_library(desert_planner FOLDERS src/planner ONLY ${needs_ompl} LINK PUBLIC desert_paths PRIVATE desert::ompl)
 endif()
 
 desert_library(desert_render FOLDERS src/render LINK PUBLIC desert::eigen) # meshes and colours: no ROS, OGRE or Qt
@@ -101,8 +104,8 @@ endif()
 
 # ---- Programs -----------------------------------------------------------------------------------
 desert_library(desert_tools STATIC FOLDERS src/tools EXCLUDE "/desert_(run|bench|dunes|metrics|calibrate)\\.cpp$"
-  LINK PUBLIC desert_command_line desert_core desert_dune_metrics desert_render desert_export desert_io desert_grid_map
-  desert::nlohmann_json)
+  LINK PUBLIC desert_command_line desert_core desert_dune_metrics desert_rover desert_paths desert_render desert_export
+  desert_io desert_grid_map desert::nlohmann_json PRIVATE desert::xxhash)
 if(TARGET desert_tools)
   target_compile_definitions(desert_tools PUBLIC
     DESERT_WITH_IO=$<TARGET_EXISTS:desert_io> DESERT_WITH_BAGS=$<TARGET_EXISTS:desert_grid_map>

@@ -89,12 +89,12 @@ function(desert_unity target count)
   set_target_properties(${target} PROPERTIES UNITY_BUILD ${DESERT_UNITY_BUILD} UNITY_BUILD_BATCH_SIZE ${count})
 endfunction()
 
-# desert_library(<target> [STATIC] [SEPARATE [<regex>]] FOLDERS <folder>... [EXCLUDE <regex>]
+# desert_library(<target> [STATIC] [SEPARATE [<regex>]] FOLDERS <folder>... [EXCLUDE <regex>] [ONLY <regex>]
 #                [LINK [PUBLIC|PRIVATE] <library>...])
 # A library of all sources in and below the folders (.cu ones with CUDA only); none while the folders are empty.
 # SEPARATE: its sources, or those that match, define the same names in namespaces of their own, or differ in options.
 function(desert_library target)
-  cmake_parse_arguments(arg "STATIC" "EXCLUDE" "SEPARATE;FOLDERS;LINK" ${ARGN})
+  cmake_parse_arguments(arg "STATIC" "EXCLUDE;ONLY" "SEPARATE;FOLDERS;LINK" ${ARGN})
   set(sources "")
   foreach(folder IN LISTS arg_FOLDERS)
     file(GLOB_RECURSE found CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${folder}/*.cpp)
@@ -106,6 +106,9 @@ function(desert_library target)
   endforeach()
   if(arg_EXCLUDE)
     list(FILTER sources EXCLUDE REGEX ${arg_EXCLUDE})
+  endif()
+  if(arg_ONLY)
+    list(FILTER sources INCLUDE REGEX ${arg_ONLY})
   endif()
   if(NOT sources)
     message(STATUS "desert_sim: ${target} left out: no sources in ${arg_FOLDERS}")
