@@ -44,6 +44,7 @@ desert_find(eigen Eigen/Core "" libeigen3-dev)
 desert_find(xxhash xxhash.h xxhash libxxhash-dev)
 file(STRINGS ${DESERT_xxhash_INCLUDE}/xxhash.h xxhash_minor REGEX "define XXH_VERSION_MINOR +[0-9]+")
 if(xxhash_minor MATCHES " [0-7]$") # Ubuntu 20.04: XXH3 is there, but was not final, and shows on request only
+  set(DESERT_OLD_XXHASH ON)
   set_property(TARGET desert::xxhash PROPERTY INTERFACE_COMPILE_DEFINITIONS XXH_STATIC_LINKING_ONLY)
   message(STATUS "desert_sim: xxHash is older than 0.8: state hashes differ from those of newer systems")
 endif()

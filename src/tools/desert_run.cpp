@@ -21,6 +21,7 @@
 #if DESERT_WITH_IO
 #include "src/io/projection.hpp"
 #endif
+#include "src/tools/certify.hpp"
 #include "src/tools/drawing.hpp"
 #include "src/tools/film.hpp"
 #include "src/tools/micro_relief_output.hpp"
@@ -248,6 +249,7 @@ std::optional<std::string> page_of(const Options& o) {
 }
 
 int run_program(const Options& o) {
+  if (o.has("certify")) return certify(o);
   RunPlan plan = plan_of(o);
   if (const std::optional<std::string> page = page_of(o)) {
     std::cout << *page;

@@ -19,9 +19,10 @@ std::string duration(double seconds) {
 
 }  // namespace
 
-Progress::Progress(std::uint64_t first, std::uint64_t last, bool quiet)
+Progress::Progress(std::uint64_t first, std::uint64_t last, bool quiet, const char* unit)
     : first_(first),
       last_(last),
+      unit_(unit),
       quiet_(quiet),
       terminal_(isatty(STDERR_FILENO) != 0),
       start_(Clock::now()),
@@ -46,14 +47,14 @@ void Progress::print(std::uint64_t step) {
   if (terminal_) {
     constexpr int width = 32;
     const std::string bar(static_cast<std::size_t>(share * width), '#');
-    std::fprintf(stderr, "\r[%-*s] %3.0f %%  step %llu of %llu  %.1f steps/s  %s left ", width, bar.c_str(),
-                 100 * share, static_cast<unsigned long long>(step), static_cast<unsigned long long>(last_),
-                 rate, duration(left).c_str());
+    std::fprintf(stderr, "\r[%-*s] %3.0f %%  %s %llu of %llu  %.1f %ss/s  %s left ", width, bar.c_str(),
+                 100 * share, unit_, static_cast<unsigned long long>(step),
+                 static_cast<unsigned long long>(last_), rate, unit_, duration(left).c_str());
     printed_ = true;
   } else {
-    std::fprintf(stderr, "step %llu of %llu (%.0f %%), %.1f steps/s, %s left\n",
+    std::fprintf(stderr, "%s %llu of %llu (%.0f %%), %.1f %ss/s, %s left\n", unit_,
                  static_cast<unsigned long long>(step), static_cast<unsigned long long>(last_), 100 * share,
-                 rate, duration(left).c_str());
+                 rate, unit_, duration(left).c_str());
   }
 }
 

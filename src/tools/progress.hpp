@@ -9,15 +9,17 @@ namespace desert_sim {
 
 class Progress {
  public:
-  Progress(std::uint64_t first, std::uint64_t last, bool quiet);
+  /// `unit`: what is counted.
+  Progress(std::uint64_t first, std::uint64_t last, bool quiet, const char* unit = "step");
   ~Progress();
-  /// Call after every step; prints at most ten times a second on a terminal, every five seconds otherwise.
+  /// Call after every one; prints at most ten times a second on a terminal, every five seconds otherwise.
   void at(std::uint64_t step);
 
  private:
   using Clock = std::chrono::steady_clock;
   void print(std::uint64_t step);
   std::uint64_t first_, last_;
+  const char* unit_;
   bool quiet_, terminal_, printed_ = false;
   Clock::time_point start_, next_;
 };

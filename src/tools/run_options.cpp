@@ -4,6 +4,33 @@
 
 namespace desert_sim {
 
+namespace {
+
+void add_certificate(Options& o) {
+  o.topic("certify", "Whether this machine gives the hashes that every machine gives")
+      .flag(
+          "certify",
+          "in place of a run: make the runs of config/certificate.json, some at a time, and tell which hash "
+          "is another one (--backend, --threads: of each run, 1 by default)")
+      .essential();
+  for (const char* other : {"steps", "duration", "set", "seed", "script", "all-raster-formats", "out",
+                            "cross-section", "export", "film", "checkpoint", "resume", "replay", "migrate",
+                            "describe", "describe-view", "describe-processes", "pipeline"})
+    o.excludes(other);
+  o.option("only", "WORD", "only runs with WORD in their name")
+      .needs("certify")
+      .option("jobs", "N", "runs at a time (default: processors / threads)")
+      .needs("certify")
+      .option("table", "FILE", "another certificate than that of the package")
+      .needs("certify")
+      .option("record", "FILE",
+              "in place of a comparison: write the certificate with the hashes of this machine; without "
+              "--table also with a run of each scenario that has none")
+      .needs("certify");
+}
+
+}  // namespace
+
 Options run_options() {
   Options o("desert_run", "Runs a scenario without ROS and without a window.");
   o.positional("SCENARIO", "a YAML file, or the name of an installed scenario, such as barchan", 0)
@@ -93,9 +120,10 @@ Options run_options() {
             "print the processes of a step of the scenario in order, with layers and memory, and how many "
             "steps a run takes")
       .footer(
-          "Exit status: 0; 1 if a material was lost or gained; 2 for invalid input; 3 for a\n"
-          "failure at run time; 130 after Ctrl-C, SIGTERM or SIGHUP. Outputs are written\n"
-          "except for 2 and 3.");
+          "Exit status: 0; 1 if a material was lost or gained, or a hash of --certify differs;\n"
+          "2 for invalid input; 3 for a failure at run time; 130 after Ctrl-C, SIGTERM or\n"
+          "SIGHUP. Outputs are written except for 2 and 3.");
+  add_certificate(o);
   return o;
 }
 
