@@ -44,19 +44,27 @@ Scenario two_winds(double theta, std::uint64_t seed) {
 }
 
 /// Crests (counter-clockwise from the first wind) against the bedform instability with speed-up factor 1.6:
-/// Rubin & Hunter 1987, Courrech du Pont 2014, Gao 2015.
+/// Rubin & Hunter 1987, Courrech du Pont 2014, Gao 2015. Fields of 192 m hold few dunes, and those of sixteen
+/// seeds scatter by three degrees about their mean: the law is that of the mean, here of eight.
 class TwoWinds : public ::testing::TestWithParam<std::pair<double, double>> {};
 
 TEST_P(TwoWinds, CrestOrientation) {
   const auto [theta, expected] = GetParam();
-  for (std::uint64_t seed : {1u, 2u}) {
-    Running scene(two_winds(theta, seed));
+  constexpr int seeds = 8;
+  double away = 0;
+  for (int seed = 1; seed <= seeds; ++seed) {
+    Running scene(two_winds(theta, static_cast<std::uint64_t>(seed)));
     const Orientation o = crest_orientation(scene.run(500).field(Layer::elevation), 4);
-    DESERT_REPORT("second wind at %.0f: crests at %.1f degrees (coherence %.2f), expected %.1f", theta,
-                  o.crest_deg, o.coherence, expected);
-    EXPECT_LT(line_angle_between_deg(o.crest_deg, expected), 10) << "seed " << seed;
+    const double here = std::remainder(o.crest_deg - expected, 180);
+    DESERT_REPORT("second wind at %.0f, seed %d: crests at %.1f degrees (coherence %.2f), expected %.1f",
+                  theta, seed, o.crest_deg, o.coherence, expected);
+    EXPECT_LT(std::abs(here), 18) << "seed " << seed;
     EXPECT_GT(o.coherence, 0.7) << "seed " << seed;
+    away += here / seeds;
   }
+  DESERT_REPORT("second wind at %.0f: %.1f degrees from what is expected, the mean of %d seeds", theta, away,
+                seeds);
+  EXPECT_LT(std::abs(away), 10);
 }
 
 INSTANTIATE_TEST_SUITE_P(Laws, TwoWinds,
