@@ -16,7 +16,7 @@ TEST_P(ShearStressEdges, OfRidgesAcrossTheTerrainAreAsItsMiddle) {
     SCOPED_TRACE(stress_cell);
     auto s = test::with_sand(
         exec(),
-        "grid: {width: 60, height: 48, boundary: open}\nsand: {model: continuum}\n"
+        "grid: {width: 60, height: 48, cell_size: 1, boundary: open}\nsand: {model: continuum}\n"
         "wind: {speed: 12, direction_deg: 0}\navalanching: {enabled: false}\nsaltation: {enabled: false}\n"
         "shear_stress: {stress_cell: " +
             std::to_string(stress_cell) + "}\n",
