@@ -195,8 +195,9 @@ class LinesTransform final : public Fft {
     p.lines_per_team = p.law.length <= 512 ? 2 : 4;
     while (p.shared_bytes() > exec_.shared_memory_of_a_block() && p.lines_per_block() > 1)
       (p.lines_per_team > 1 ? p.lines_per_team : p.teams) /= 2;
+    // All that there is, because a simulation in another thread asks for the same kernel.
     check_cuda(cudaFuncSetAttribute(lines_kernel, cudaFuncAttributeMaxDynamicSharedMemorySize,
-                                    static_cast<int>(p.shared_bytes())),
+                                    static_cast<int>(exec_.shared_memory_of_a_block())),
                "asking for the shared memory of lines");
     const int lines = p.lines_per_block();
     lines_kernel<<<dim3((p.count + lines - 1) / lines, fields_), p.teams * p.team_size(), p.shared_bytes(),

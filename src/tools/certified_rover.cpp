@@ -9,7 +9,6 @@
 #include "src/rover/sensors/depth_camera.hpp"
 #include "src/rover/sensors/lidar.hpp"
 #include "src/rover/simulated_ground.hpp"
-#include "src/rover/start_place.hpp"
 #include "src/simulation/session.hpp"
 #include "src/tools/certified_hash.hpp"
 #include "src/tools/digest.hpp"
@@ -35,12 +34,6 @@ Rover noisy_rover(const CertifiedRun& run, const Scenario& scenario) {
   const auto& repose = scenario.get<ReposeParameters>();
   return Rover(parameters, {}, file,
                {static_cast<double>(repose.half_wet), static_cast<double>(repose.saturated)});
-}
-
-/// The inner half of a grid that is resolved.
-StartArea area_of(const GridParameters& grid) {
-  const double width = grid.cell_size * grid.width, height = grid.cell_size * grid.height;
-  return {grid.origin_x + width / 2, grid.origin_y + height / 2, width / 2, height / 2};
 }
 
 /// The scene that beams meet, and where the sensors stand in it: above its middle, tilted.
@@ -97,8 +90,9 @@ std::uint64_t rover_hash(const CertifiedRun& run, const CertifiedPlace& place) {
   resolve_grid(scenario, place.load_raster);
   Rover rover = noisy_rover(run, scenario);
   SimulatedGround terrain(scenario, place.load_raster, place.backend, place.threads, true);
-  const Start start = choose_start(rover, area_of(scenario.grid), {}, {}, yaw, terrain.at(0));
-  rover.place(start.place.x, start.place.y, yaw, terrain.at(0));
+  const GridParameters& grid = scenario.grid;
+  rover.place(grid.origin_x + 0.5 * grid.cell_size * grid.width,
+              grid.origin_y + 0.5 * grid.cell_size * grid.height, yaw, terrain.at(0));
   Digest digest;
   for (std::uint64_t step = 0; step < run.steps; ++step) {
     const GroundSource& ground = terrain.at(step);

@@ -250,8 +250,9 @@ void transform_by_lines(CudaExec& exec, const CoarseLaws& laws, Workspace& work)
   Arguments kernel_arguments{
       laws, {work.lines_along_x, work.roots_x.data()}, {work.lines_along_y, work.roots_y.data()}};
   const std::size_t bytes = bytes_for_lines(coarse, laws.response.fields());
+  // All that there is, because a simulation in another thread asks for the same kernel.
   check_cuda(cudaFuncSetAttribute(coarse_wind_kernel, cudaFuncAttributeMaxDynamicSharedMemorySize,
-                                  static_cast<int>(bytes)),
+                                  static_cast<int>(exec.shared_memory_of_a_block())),
              "asking for shared memory");
   int device = 0, multiprocessors = 0, blocks_per_multiprocessor = 0;
   check_cuda(cudaGetDevice(&device), "asking for the device");
