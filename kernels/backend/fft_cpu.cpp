@@ -10,6 +10,7 @@
 #include "kernels/backend/fft.hpp"
 #include "kernels/backend/for_each_cpu.hpp"
 #include "kernels/backend/line_block.hpp"
+#include "kernels/backend/lines_fft.hpp"
 #include "src/core/error.hpp"
 
 namespace desert_sim {
@@ -68,47 +69,18 @@ class FftwTransform final : public Fft {
 
 /// All lines along one axis, by all threads. The arithmetic of a line does not depend on which thread has it,
 /// nor on its lane, so that the bits do not depend on the number of threads.
-class LinesTransform final : public Fft {
+class LinesTransform final : public LinesFft {
  public:
   LinesTransform(int width, int height, int fields, FftMethod method, int threads)
-      : width_(width),
-        height_(height),
+      : LinesFft(width, height, method),
         fields_(fields),
-        distinct_rows_(method == FftMethod::mirrored_rows_first ? height / 2 : height),
-        columns_first_(method == FftMethod::columns_first),
         threads_(threads),
-        along_x_(LineTransform::for_length(width)),
-        along_y_(LineTransform::for_length(height)),
         roots_x_(along_x_.roots()),
         roots_y_(along_y_.roots()) {}
 
-  void forward(Complex* values) override {
-    if (columns_first_) columns(values, false, height_, height_);
-    rows(values, false);
-    if (!columns_first_) columns(values, false, distinct_rows_, height_);
-  }
-  /// A forward transform of values whose real and imaginary parts are exchanged.
-  void inverse(Complex* values) override {
-    if (!columns_first_) columns(values, true, height_, distinct_rows_);
-    rows(values, true);
-    if (columns_first_) columns(values, true, height_, height_);
-  }
-  int rows_given() const override { return distinct_rows_; }
-
  private:
-  void rows(Complex* values, bool exchanged) const {
-    pass(values, exchanged, along_x_, roots_x_, {distinct_rows_, width_, 1, width_, width_});
-  }
-  void columns(Complex* values, bool exchanged, int given, int wanted) const {
-    pass(values, exchanged, along_y_, roots_y_, {width_, 1, width_, given, wanted});
-  }
-  struct Lines {
-    int count;
-    int from_line, from_value;  ///< distances in memory from a line, and from a value, to the next
-    int given, wanted;          ///< values of a line: those after `given` mirror these
-  };
-  void pass(Complex* values, bool exchanged, const LineTransform& law, const std::vector<Complex>& roots,
-            const Lines& lines) const {
+  void pass(Complex* values, bool exchanged, const LineTransform& law, const Lines& lines) override {
+    const std::vector<Complex>& roots = &law == &along_x_ ? roots_x_ : roots_y_;
     const int blocks = (lines.count + lanes - 1) / lanes;
     WorkStealingRange all(threads_, blocks * fields_);
 #pragma omp parallel num_threads(threads_) if (width_ * height_ >= min_parallel_cells)
@@ -166,10 +138,7 @@ class LinesTransform final : public Fft {
     return exchanged ? Lane{lane.im, lane.re} : lane;
   }
 
-  int width_, height_, fields_, distinct_rows_;
-  bool columns_first_;
-  int threads_;
-  LineTransform along_x_, along_y_;
+  int fields_, threads_;
   std::vector<Complex> roots_x_, roots_y_;
 };
 

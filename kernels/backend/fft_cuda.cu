@@ -6,7 +6,7 @@
 #include "kernels/backend/buffer.hpp"
 #include "kernels/backend/fft.hpp"
 #include "kernels/backend/for_each_cuda.cuh"
-#include "kernels/backend/line_transform.hpp"
+#include "kernels/backend/lines_fft.hpp"
 #include "src/core/error.hpp"
 
 namespace desert_sim {
@@ -150,47 +150,34 @@ __global__ void lines_kernel(const LinesPass p) {
   });
 }
 
-class LinesTransform final : public Fft {
+class LinesTransform final : public LinesFft {
  public:
   LinesTransform(CudaExec& exec, int width, int height, int fields, FftMethod method)
-      : exec_(exec),
-        width_(width),
-        height_(height),
+      : LinesFft(width, height, method),
+        exec_(exec),
         fields_(fields),
-        distinct_rows_(method == FftMethod::mirrored_rows_first ? height / 2 : height),
-        columns_first_(method == FftMethod::columns_first),
-        along_x_(LineTransform::for_length(width)),
-        along_y_(LineTransform::for_length(height)),
         roots_x_(exec, static_cast<std::size_t>(width)),
         roots_y_(exec, static_cast<std::size_t>(height)) {
     roots_x_.upload(along_x_.roots());
     roots_y_.upload(along_y_.roots());
   }
-  void forward(Complex* values) override {
-    if (columns_first_) columns(values, false, height_, height_);
-    rows(values, false);
-    if (!columns_first_) columns(values, false, distinct_rows_, height_);
-  }
-  /// A forward transform of values whose real and imaginary parts are exchanged.
-  void inverse(Complex* values) override {
-    if (!columns_first_) columns(values, true, height_, distinct_rows_);
-    rows(values, true);
-    if (columns_first_) columns(values, true, height_, height_);
-  }
-  int rows_given() const override { return distinct_rows_; }
   std::size_t bytes() const override { return roots_x_.bytes() + roots_y_.bytes(); }
 
  private:
-  void rows(Complex* values, bool exchanged) {
-    pass({along_x_, roots_x_.data(), values, width_ * height_, exchanged, distinct_rows_, width_, 1, width_,
-          width_, 0, 0});
-  }
-  void columns(Complex* values, bool exchanged, int given, int wanted) {
-    pass({along_y_, roots_y_.data(), values, width_ * height_, exchanged, width_, 1, width_, given, wanted, 0,
-          0});
-  }
   /// With several lines a block, because those of columns lie beside each other in memory.
-  void pass(LinesPass p) {
+  void pass(Complex* values, bool exchanged, const LineTransform& law, const Lines& along) override {
+    LinesPass p{law,
+                (&law == &along_x_ ? roots_x_ : roots_y_).data(),
+                values,
+                width_ * height_,
+                exchanged,
+                along.count,
+                along.from_line,
+                along.from_value,
+                along.given,
+                along.wanted,
+                0,
+                0};
     p.teams = p.law.length <= 512 ? 4 : p.law.length <= 1024 ? 2 : 1;
     p.lines_per_team = p.law.length <= 512 ? 2 : 4;
     while (p.shared_bytes() > exec_.shared_memory_of_a_block() && p.lines_per_block() > 1)
@@ -206,9 +193,7 @@ class LinesTransform final : public Fft {
   }
 
   CudaExec& exec_;
-  int width_, height_, fields_, distinct_rows_;
-  bool columns_first_;
-  LineTransform along_x_, along_y_;
+  int fields_;
   Buffer<Complex> roots_x_, roots_y_;
 };
 
