@@ -20,13 +20,14 @@ struct Relief {
   /// With patches and bumps computed where they are needed. `x`, `y`: metres from the south-west corner.
   DESERT_HD float offset(double x, double y) const {
     return offset(
-        x, y,
-        [this](int i, int j) {
-          return ripples.patch(cells, ripples.lattice.column(i), ripples.lattice.row(j));
-        },
-        [this](int i, int j) {
-          return bumps.bump(cells, ripples, bumps.lattice.column(i), bumps.lattice.row(j));
-        });
+        x, y, [this](int i, int j) { return patch(i, j); }, [this](int i, int j) { return bump(i, j); });
+  }
+  /// Of a square next to one on the terrain.
+  DESERT_HD RipplePatch patch(int i, int j) const {
+    return ripples.patch(cells, ripples.lattice.column(i), ripples.lattice.row(j));
+  }
+  DESERT_HD Bump bump(int i, int j) const {
+    return bumps.bump(cells, ripples, bumps.lattice.column(i), bumps.lattice.row(j));
   }
   /// With patches and bumps from somewhere else, for many places.
   template <class PatchOf, class BumpOf>

@@ -9,7 +9,7 @@ namespace {
 
 struct FillPatches {
   Relief relief;
-  SquareTable table;
+  SquareBox table;
   RipplePatch* patches;
 
   DESERT_HD void operator()(int i, int j) const {
@@ -22,7 +22,7 @@ struct FillPatches {
 
 struct FillBumps {
   Relief relief;
-  SquareTable table;
+  SquareBox table;
   Bump* bumps;
 
   DESERT_HD void operator()(int i, int j) const {
@@ -53,16 +53,24 @@ Grid grid_of(int columns, int rows) { return {columns, rows, 1.0f, false, false}
 }  // namespace
 
 template <class E>
+void fill_squares(E& exec, const Relief& relief, const SquareBox& patch_box, RipplePatch* patches,
+                  const SquareBox& bump_box, Bump* bumps) {
+  if (patch_box.size() > 0)
+    for_each_cell(exec, grid_of(patch_box.columns, patch_box.rows), FillPatches{relief, patch_box, patches});
+  if (bump_box.size() > 0)
+    for_each_cell(exec, grid_of(bump_box.columns, bump_box.rows), FillBumps{relief, bump_box, bumps});
+}
+
+template <class E>
 void offsets(E& exec, const Relief& relief, const Points& points, RipplePatch* patches, Bump* bumps,
              float* to) {
   const SquareTable patch_table(relief.ripples.lattice, points), bump_table(relief.bumps.lattice, points);
-  for_each_cell(exec, grid_of(patch_table.columns, patch_table.rows),
-                FillPatches{relief, patch_table, patches});
-  for_each_cell(exec, grid_of(bump_table.columns, bump_table.rows), FillBumps{relief, bump_table, bumps});
+  fill_squares(exec, relief, patch_table, patches, bump_table, bumps);
   for_each_cell(exec, grid_of(points.columns, points.rows),
                 Offsets{relief, points, patch_table, bump_table, patches, bumps, to});
 }
 
+template void fill_squares(Backend&, const Relief&, const SquareBox&, RipplePatch*, const SquareBox&, Bump*);
 template void offsets(Backend&, const Relief&, const Points&, RipplePatch*, Bump*, float*);
 
 }  // namespace desert_sim::micro_relief

@@ -19,10 +19,13 @@ struct WriteRectangle {
   int width;
   float* layer;
 
+  DESERT_HD float usable(float v) const {
+    if (sane == Sane::as_they_are) return v;
+    return sane == Sane::heights ? (fabsf(v) < 1e9f ? v : NAN) : (v > 0.0f ? v : 0.0f);
+  }
   DESERT_HD void operator()(int x, int y) const {
     const float v = values[y * cells.width + x];
-    const float usable = sane == Sane::heights ? (fabsf(v) < 1e9f ? v : NAN) : (v > 0.0f ? v : 0.0f);
-    layer[(cells.y + y) * width + cells.x + x] = usable;
+    layer[(cells.y + y) * width + cells.x + x] = usable(v);
   }
 };
 

@@ -50,8 +50,8 @@ int plan_levels(View& view);
 
 /// Copies a rectangle of values into a layer. `sane` says what becomes of values that a layer cannot have:
 /// of the elevation, numbers beyond ±1e9 become NaN; of other layers, what is not above 0 (NaN, too) becomes
-/// 0.
-enum class Sane { heights, amounts };
+/// 0. `as_they_are` copies them.
+enum class Sane { heights, amounts, as_they_are };
 template <class E>
 void write_rectangle(E& exec, const float* values, const Rectangle& cells, Sane sane, int width,
                      float* layer);

@@ -12,7 +12,7 @@
 
 #include <cmath>
 
-#include "kernels/micro_relief/relief.hpp"
+#include "kernels/micro_relief/window.hpp"
 #include "kernels/rover/ray.hpp"
 
 namespace desert_sim::ray_march {
@@ -49,18 +49,20 @@ struct PlainGround {
 struct RippledGround {
   static constexpr bool has_micro_relief = true;
   micro_relief::Relief relief;
-  double cell_size;  ///< [m]
-  float high;        ///< what micro-relief adds at most [m]
+  micro_relief::KnownSquares known;  ///< of those in which most beams end
+  double cell_size;                  ///< [m]
+  float high;                        ///< what micro-relief adds at most [m]
 
-  RippledGround(const micro_relief::Relief& r, double cell)
+  RippledGround(const micro_relief::Relief& r, const micro_relief::KnownSquares& squares, double cell)
       : relief(r),
+        known(squares),
         cell_size(cell),
         high(0.5f * r.ripples.size.steepness * r.ripples.size.longest +
              1.25f * (1.0f + r.bumps.lee) * r.bumps.height) {}
 
   /// At the place (a, b) of a patch, which has cell (p − 1, q − 1) in its south-west corner.
   DESERT_HD float offset(int p, int q, float a, float b) const {
-    return relief.offset((p - 0.5 + double{a}) * cell_size, (q - 0.5 + double{b}) * cell_size);
+    return known.offset(relief, (p - 0.5 + double{a}) * cell_size, (q - 0.5 + double{b}) * cell_size);
   }
   DESERT_HD float above(const PartOverPatch& r, float s) const {
     return r.c0 + (r.c1 + r.c2 * s) * s - offset(r.p, r.q, r.a + s * r.du, r.b + s * r.dv);

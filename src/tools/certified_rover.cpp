@@ -10,6 +10,7 @@
 #include "src/rover/sensors/lidar.hpp"
 #include "src/rover/simulated_ground.hpp"
 #include "src/simulation/session.hpp"
+#include "src/simulation/views/snapshot_source.hpp"
 #include "src/tools/certified_hash.hpp"
 #include "src/tools/digest.hpp"
 
@@ -55,7 +56,7 @@ struct SensorScene {
     show(SceneLayer::canopy_height, Layer::canopy_height);
     show(SceneLayer::vegetation, Layer::vegetation);
     show(SceneLayer::airborne_sand, Layer::airborne_sand);
-    scene->set_micro_relief(*s);
+    scene->set_micro_relief(source_of(*s));
     const std::vector<float>& elevation = *s->find(Layer::elevation);
     const auto middle = static_cast<std::size_t>(s->height / 2) * static_cast<std::size_t>(s->width) +
                         static_cast<std::size_t>(s->width / 2);

@@ -13,6 +13,7 @@
 #include "src/core/error.hpp"
 #include "src/core/files.hpp"
 #include "src/rover/sensors/lidar.hpp"
+#include "src/simulation/views/snapshot_source.hpp"
 #include "src/tools/json.hpp"
 
 using namespace desert_sim;
@@ -30,12 +31,14 @@ Options options() {
       .option("threads", "N", "threads of the CPU backend (default 1)")
       .option("scans", "N", "scans of which the median counts (default 15)")
       .flag("media", "with plants on a quarter of the ground and sand in the air")
+      .flag("micro-relief", "with ripples and heaps on the ground, and a new state of it before each scan")
       .option("json", "FILE", "write the results to FILE (-: print them instead of the table)")
       .footer(
           "A lidar stands 1.5 m above dunes up to 12 m high, looks 100 m far, 22.5 deg\n"
           "down to 22.5 deg up, each time from another place. A row has the median time of\n"
           "a scan with its copy to the host, on the wall and of all threads on processors,\n"
           "that of an update of 64 x 64 cells, and the share of the beams that return.\n"
+          "With --micro-relief that of a scan includes what follows from the new state.\n"
           "Exit status: 0; 2 for invalid input; 3 for a failure at run time.");
   return o;
 }
@@ -63,7 +66,8 @@ class Bench {
       : exec_(make_exec(o.text("backend", "cpu"), static_cast<int>(o.number("threads", 1, 1, 4096)))),
         cell_size_(1e-3 * static_cast<double>(o.number("cell-size", 500, 1, 100000))),
         scans_(static_cast<int>(o.number("scans", 15, 1, 100000))),
-        media_(o.has("media")) {}
+        media_(o.has("media")),
+        micro_relief_(o.has("micro-relief")) {}
 
   Exec& exec() { return *exec_; }
 
@@ -74,6 +78,7 @@ class Bench {
     p.rings = rings;
     p.columns = columns;
     Lidar lidar(*exec_, p);
+    const std::shared_ptr<const MicroReliefSource> source = micro_relief_ ? source_of(state(size)) : nullptr;
     std::vector<double> times, cpu_times;
     long long returns = 0;
     const double side = size * cell_size_;
@@ -82,6 +87,7 @@ class Bench {
       const SensorPose pose{{x, y, static_cast<double>(dune_height(x, y)) + 1.5}};
       const double cpu_begin = processor_time();
       const auto begin = Clock::now();
+      if (source) scene.set_micro_relief(source);
       const RangeImage& image = lidar.scan(scene, pose, static_cast<std::uint64_t>(n + 1));
       if (n < 0) continue;
       times.push_back(std::chrono::duration<double, std::milli>(Clock::now() - begin).count());
@@ -99,6 +105,31 @@ class Bench {
   }
 
  private:
+  /// Sand under a wind that varies, with stones here and there.
+  Snapshot state(int size) const {
+    Snapshot s;
+    s.width = s.height = s.micro_relief.grid_height = size;
+    s.cell_size = cell_size_;
+    s.periodic_x = s.periodic_y = s.micro_relief.periodic_y = false;
+    s.wind_above = {8, 3};
+    s.micro_relief.wind = RippleWind::settled(s.wind_above);
+    const auto fill = [&](Layer layer, const auto& value) {
+      for (int y = 0; y < size; ++y)
+        for (int x = 0; x < size; ++x)
+          s.layers[layer].push_back(
+              static_cast<float>(value((x + 0.5) * cell_size_, (y + 0.5) * cell_size_)));
+    };
+    fill(Layer::elevation, dune_height);
+    fill(Layer::sand, [](double x, double y) { return 0.5 + 0.5 * std::sin(x / 9 + y / 7); });
+    fill(Layer::wind_x, [](double x, double y) { return 7 + 2 * std::sin(x / 20 - y / 30); });
+    fill(Layer::wind_y, [](double x, double y) { return 2 + std::cos(x / 30 + y / 25); });
+    fill(Layer::wind_shadow, [](double x, double y) { return std::sin(x / 15 + y / 40) > 0.7 ? 1 : 0; });
+    fill(Layer::obstacle,
+         [](double x, double y) { return std::sin(x / 3) * std::sin(y / 3) > 0.98 ? 1 : 0; });
+    for (Layer layer : {Layer::soil, Layer::water, Layer::moisture, Layer::vegetation})
+      fill(layer, [](double, double) { return 0; });
+    return s;
+  }
   void fill(HeightFieldScene& scene, int size) const {
     std::vector<float> heights, canopy, density, air;
     for (int y = 0; y < size; ++y)
@@ -136,7 +167,7 @@ class Bench {
   std::unique_ptr<Exec> exec_;
   double cell_size_;
   int scans_;
-  bool media_;
+  bool media_, micro_relief_;
 };
 
 std::string json_of(const std::vector<Row>& rows, const Exec& exec) {

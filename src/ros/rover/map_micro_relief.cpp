@@ -28,8 +28,7 @@ Snapshot MapMicroRelief::snapshot(const RowBand& band) const {
   s.origin_y += rows.first * s.cell_size;
   s.periodic_y = settings_.periodic_y && rows.count == settings_.height;
   s.micro_relief.first_row = rows.first;
-  if (s.micro_relief.needs_feet())
-    s.feet = plants_->feet(s.micro_relief.bump_squares(s.width, s.cell_size, s.periodic_x));
+  s.feet = feet();
   for (const auto& [layer, map] : maps_) {
     std::vector<float>& values = s.layers[layer];
     values.reserve(static_cast<std::size_t>(s.width) * static_cast<std::size_t>(s.height));
@@ -40,6 +39,17 @@ Snapshot MapMicroRelief::snapshot(const RowBand& band) const {
     }
   }
   return s;
+}
+
+std::shared_ptr<const PlantFeet> MapMicroRelief::feet() const {
+  const MicroReliefSettings& s = settings_.micro_relief;
+  if (!s.needs_feet()) return nullptr;
+  return plants_->feet(s.bump_squares(settings_.width, settings_.cell_size, settings_.periodic_x));
+}
+
+std::vector<float> MapMicroRelief::values(Layer layer, const Rectangle& r) const {
+  return maps_.at(layer)->values({static_cast<std::uint32_t>(r.x), static_cast<std::uint32_t>(r.y),
+                                  static_cast<std::uint32_t>(r.width), static_cast<std::uint32_t>(r.height)});
 }
 
 double MapMicroRelief::offset(double x, double y) const {

@@ -13,7 +13,7 @@
 
 namespace desert_sim {
 
-class MapMicroRelief {
+class MapMicroRelief : public MicroReliefSource {
  public:
   using Maps = std::map<Layer, std::shared_ptr<const LayerMap>>;
 
@@ -28,8 +28,10 @@ class MapMicroRelief {
   /// MicroRelief::offset() [m] at a point of the terrain's frame. Rows of cells are looked at as far as
   /// points need them. From any thread.
   double offset(double x, double y) const;
-  /// The snapshot of all rows that MicroRelief and HeightFieldScene take. From any thread.
-  Snapshot snapshot() const { return snapshot({}); }
+
+  const Snapshot& grid() const override { return settings_; }
+  std::shared_ptr<const PlantFeet> feet() const override;
+  std::vector<float> values(Layer layer, const Rectangle& cells) const override;
 
  private:
   Snapshot snapshot(const RowBand& band) const;

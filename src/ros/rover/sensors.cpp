@@ -198,7 +198,7 @@ void SensorPublisher::update_micro_relief(const std::shared_ptr<const MapMicroRe
   if (micro_relief == scene_micro_relief_) return;
   scene_micro_relief_ = micro_relief;
   if (micro_relief && micro_relief->geometry() == scene_->geometry())
-    scene_->set_micro_relief(micro_relief->snapshot());
+    scene_->set_micro_relief(micro_relief);
   else
     scene_->clear_micro_relief();
 }

@@ -106,33 +106,19 @@ void HeightFieldScene::update(SceneLayer layer, const Rectangle& cells, const st
   refresh_tops(first ? whole() : cells);
 }
 
-void HeightFieldScene::set_micro_relief(const Snapshot& s) {
+void HeightFieldScene::set_micro_relief(std::shared_ptr<const MicroReliefSource> source) {
+  const Snapshot& s = source->grid();
   const SceneGeometry grid{s.width, s.height, s.cell_size, s.origin_x, s.origin_y};
   if (!(grid == geometry_))
     throw ConfigError("sensors: the micro_relief is of a grid of " + std::to_string(s.width) + " x " +
                       std::to_string(s.height) + " cells, or of another place (allowed: the " +
                       std::to_string(geometry_.width) + " x " + std::to_string(geometry_.height) +
                       " cells of the ground)");
-  using micro_relief::Cells;
-  const MicroRelief micro_relief(s);
-  micro_relief::Relief relief = micro_relief.relief();
-  std::size_t next = 0;
-  for (const float* Cells::*const layer : {&Cells::sand, &Cells::mobile, &Cells::level, &Cells::growth,
-                                           &Cells::stones, &Cells::turn_x, &Cells::turn_y}) {
-    if (next == micro_relief_cells_.size()) micro_relief_cells_.emplace_back(exec_, elevation_.size());
-    Buffer<float>& buffer = micro_relief_cells_[next++];
-    exec_.upload(buffer.data(), relief.cells.*layer, buffer.bytes());
-    relief.cells.*layer = buffer.data();
-  }
-  if (relief.bumps.feet.live) {
-    if (feet_ != s.feet) {
-      if (feet_numbers_.size() != s.feet->widest.size()) feet_numbers_ = {exec_, s.feet->widest.size()};
-      feet_numbers_.upload(s.feet->widest);
-      feet_ = s.feet;
-    }
-    relief.bumps.feet.widest = feet_numbers_.data();
-  }
-  micro_relief_ = relief;
+  has_micro_relief_ = true;
+  if (micro_relief_)
+    micro_relief_->set(std::move(source));
+  else
+    micro_relief_ = std::make_unique<SceneMicroRelief>(exec_, std::move(source));
 }
 
 void HeightFieldScene::write(SceneLayer layer, const Rectangle& cells, const std::vector<float>& values) {

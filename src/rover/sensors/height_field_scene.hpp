@@ -2,13 +2,13 @@
 /// The terrain as range sensors see it: a height field with plants and airborne sand in the memory of a
 /// backend, which is kept up to date by rectangles of cells that have changed.
 
-#include <optional>
+#include <memory>
 #include <vector>
 
 #include "kernels/backend/buffer.hpp"
 #include "kernels/backend/exec.hpp"
 #include "kernels/rover/height_field.hpp"
-#include "src/simulation/views/micro_relief.hpp"
+#include "src/rover/sensors/scene_micro_relief.hpp"
 
 namespace desert_sim {
 
@@ -44,12 +44,12 @@ class HeightFieldScene {
   /// The same for the whole grid.
   void update(SceneLayer layer, const std::vector<float>& values);
 
-  /// Puts ripples and bumps on the ground until the next call: those of a snapshot of all rows with
-  /// MicroRelief::layers() and feet. The elevation that beams meet is still that of update(). Throws
-  /// ConfigError if the snapshot has another grid.
-  void set_micro_relief(const Snapshot& snapshot);
-  void clear_micro_relief() { micro_relief_.reset(); }
-  const std::optional<micro_relief::Relief>& micro_relief() const { return micro_relief_; }
+  /// Puts ripples and bumps on the ground until the next call, as far as scans ask for them. The elevation
+  /// that beams meet is still that of update(). Throws ConfigError if the source has another grid.
+  void set_micro_relief(std::shared_ptr<const MicroReliefSource> source);
+  void clear_micro_relief() { has_micro_relief_ = false; }
+  /// Null: there are none.
+  SceneMicroRelief* micro_relief() const { return has_micro_relief_ ? micro_relief_.get() : nullptr; }
 
  private:
   void check(const Rectangle& cells, std::size_t values) const;
@@ -65,10 +65,8 @@ class HeightFieldScene {
   Buffer<float> elevation_, tops_;
   Buffer<float> canopy_, density_;                    ///< empty while there are no plants
   Buffer<float> airborne_sand_, dust_, dust_ground_;  ///< empty while no sand is in the air
-  std::vector<Buffer<float>> micro_relief_cells_;     ///< what micro_relief_ points to
-  std::shared_ptr<const PlantFeet> feet_;             ///< those in feet_numbers_
-  Buffer<micro_relief::FootNumber> feet_numbers_;
-  std::optional<micro_relief::Relief> micro_relief_;
+  std::unique_ptr<SceneMicroRelief> micro_relief_;    ///< null before the first
+  bool has_micro_relief_ = false;
   Buffer<float> staging_;  ///< values on their way to the device
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "src/core/elementary.hpp"
 #include "src/core/error.hpp"
 
 namespace desert_sim {
@@ -45,6 +46,8 @@ RangeSensor::RangeSensor(Exec& exec, int columns, int rows, std::vector<beams::V
       distances_(exec, directions_.size()),
       intensities_(exec, directions_.size()) {
   device_directions_.upload(directions_);
+  for (const beams::Vec3& d : directions_)
+    reach_ = std::max(reach_, double{settings_.farthest} * elementary::hypot(d.x, d.y, d.z));
   image_.columns = columns;
   image_.rows = rows;
   image_.distances.resize(directions_.size());
@@ -74,8 +77,8 @@ const RangeImage& RangeSensor::scan(const HeightFieldScene& scene, const SensorP
       beams::cast(exec, scan, surface, image_.columns, image_.rows, device_directions_.data(),
                   distances_.data(), intensities_.data());
     };
-    if (const std::optional<micro_relief::Relief>& micro_relief = scene.micro_relief())
-      cast(ray_march::RippledGround(*micro_relief, scene.geometry().cell_size));
+    if (SceneMicroRelief* const micro_relief = scene.micro_relief())
+      cast(micro_relief->within(pose.position.x(), pose.position.y(), reach_, directions_.size()));
     else
       cast(ray_march::PlainGround());
   });

@@ -41,6 +41,7 @@ class RangeSensor {
   Exec& exec_;
   Settings settings_;
   std::vector<beams::Vec3> directions_;
+  double reach_ = 0;  ///< of the longest beam [m]
   Buffer<beams::Vec3> device_directions_;
   Buffer<float> distances_, intensities_;
   RangeImage image_;

@@ -6,7 +6,6 @@
 
 #include "kernels/backend/exec.hpp"
 #include "kernels/micro_relief/window.hpp"
-#include "kernels/sand/saltation_inputs.hpp"
 #include "src/core/error.hpp"
 #include "src/terrain/bilinear.hpp"
 
@@ -14,23 +13,7 @@ namespace desert_sim {
 
 using micro_relief::Bumps;
 using micro_relief::Cells;
-using micro_relief::Lattice;
-using micro_relief::Relief;
-using micro_relief::Ripples;
 using micro_relief::SquareTable;
-
-namespace {
-
-constexpr float drowned = 0.002f;  ///< depth of water under which nothing is left of ripples [m]
-
-Relief relief_of(const MicroReliefSettings& s, const Cells& cells, double cell_size) {
-  const Lattice patches(cells.x.count * cell_size, cells.y.count * cell_size,
-                        double{s.parameters.crest_length}, cells.x.periodic, cells.y.periodic);
-  return {cells, Ripples(s.parameters, s.wind, s.seed, patches),
-          Bumps(s.parameters, s.seed, s.bump_squares(cells.x.count, cell_size, cells.x.periodic))};
-}
-
-}  // namespace
 
 const std::vector<Layer>& MicroRelief::layers() {
   static const std::vector<Layer> all{Layer::elevation,  Layer::sand,       Layer::soil,   Layer::water,
@@ -67,9 +50,7 @@ MicroRelief::MicroRelief(const Snapshot& s)
       periodic_y_(s.micro_relief.periodic_y),
       first_row_(wrap(s.micro_relief.first_row, s.micro_relief.grid_height)),
       rows_(s.height),
-      relief_(relief_of(s.micro_relief,
-                        {{width_, 1 / s.cell_size, periodic_x_}, {height_, 1 / s.cell_size, periodic_y_}},
-                        s.cell_size)) {
+      relief_(relief_without_cells(s)) {
   take_feet(s);
   fill_cells(s);
   Cells& c = relief_.cells;
@@ -97,55 +78,53 @@ void MicroRelief::fill_cells(const Snapshot& s) {
     throw ConfigError("micro_relief of the surface: the snapshot lacks the layer elevation");
   elevation_ = *s.find(Layer::elevation);
   const std::size_t cells = elevation_.size();
-  const std::vector<float> nowhere(cells, 0.0f);
-  const auto layer = [&](Layer which) -> const std::vector<float>& {
+  const auto copy = [&](Layer which) {
     const std::vector<float>* const values = s.find(which);
-    return values ? *values : nowhere;
+    return values ? *values : std::vector<float>(cells, 0.0f);
   };
-  const std::vector<float>&soil = layer(Layer::soil), &water = layer(Layer::water),
-        &moisture = layer(Layer::moisture), &shadow = layer(Layer::wind_shadow),
-        &wind_x = layer(Layer::wind_x), &wind_y = layer(Layer::wind_y);
-  sand_ = layer(Layer::sand);
-  growth_ = layer(Layer::vegetation);
-  stones_ = layer(Layer::obstacle);
-  for (std::vector<float>* const values : {&mobile_, &level_, &turn_x_, &turn_y_})
-    values->assign(cells, 0.0f);
-  const wind::Vector above = s.wind_above;
-  const float square = above.x * above.x + above.y * above.y;
-  const auto is_zero = [](const std::vector<float>& values) {
-    return std::all_of(values.begin(), values.end(), [](float v) { return v == 0; });
+  sand_ = copy(Layer::sand);
+  growth_ = copy(Layer::vegetation);
+  stones_ = copy(Layer::obstacle);
+  for (std::vector<float>* const values : {&mobile_, &level_, &turn_x_, &turn_y_}) values->resize(cells);
+  const auto zero = [](float v) { return v == 0; };
+  const auto is_zero = [&](Layer layer) {
+    const std::vector<float>* const values = s.find(layer);
+    return !values || std::all_of(values->begin(), values->end(), zero);
   };
   const bool bare = relief_.bumps.feet.live ? std::all_of(feet_->widest.begin(), feet_->widest.end(),
                                                           [](auto n) { return n == 0; })
-                                            : is_zero(growth_);
-  if (bare && is_zero(stones_)) relief_.bumps.height = 0;  // it saves looking for them
-  // Some models move sand without a layer of the wind.
-  const bool wind_is_known = square > 1e-6f && !(is_zero(wind_x) && is_zero(wind_y));
-  const float steep = settings_.repose_tangent;
-  const saltation::Dryness dryness(settings_.moisture_cutoff);
-  for (int y = 0; y < rows_; ++y)
-    for (int x = 0; x < width_; ++x) {
-      const auto at = [&](int i, int j) {
-        const int column = periodic_x_ ? wrap(i, width_) : clamp_index(i, width_),
-                  row = s.periodic_y ? wrap(j, rows_) : clamp_index(j, rows_);
-        return static_cast<std::size_t>(row) * static_cast<std::size_t>(width_) +
-               static_cast<std::size_t>(column);
-      };
-      const std::size_t i = at(x, y);
-      turn_x_[i] = wind_is_known ? (wind_x[i] * above.x + wind_y[i] * above.y) / square : 1.0f;
-      turn_y_[i] = wind_is_known ? (wind_y[i] * above.x - wind_x[i] * above.y) / square : 0.0f;
-      const float two_cells = static_cast<float>(2 * cell_size_);
-      const float slope = hypotenuse(elevation_[at(x + 1, y)] - elevation_[at(x - 1, y)],
-                                     elevation_[at(x, y + 1)] - elevation_[at(x, y - 1)]) /
-                          two_cells;
-      if (std::isnan(slope) || std::isnan(elevation_[i])) continue;
-      level_[i] = 1.0f - micro_relief::smooth_step((slope / steep - 0.75f) * 4.0f);
-      const float capacity =
-          settings_.moisture_capacity *
-          std::clamp(soil[i] + sand_[i], repose::least_moist_depth, settings_.moisture_depth);
-      mobile_[i] = (1.0f - shadow[i]) * (1.0f - std::clamp(stones_[i], 0.0f, 1.0f)) *
-                   (1.0f - micro_relief::smooth_step(water[i] / drowned)) * dryness(moisture[i] / capacity);
-    }
+                                            : is_zero(Layer::vegetation);
+  if (bare && is_zero(Layer::obstacle)) relief_.bumps.height = 0;  // it saves looking for them
+  fill_rows(s, MicroReliefCells(s, !(is_zero(Layer::wind_x) && is_zero(Layer::wind_y))));
+}
+
+void MicroRelief::fill_rows(const Snapshot& s, const MicroReliefCells& law) {
+  const auto begin_of = [this](int y) { return std::ptrdiff_t{y} * width_; };
+  // The elevations of a row, and beyond its ends.
+  const auto framed = [&](int y) {
+    const float* const row =
+        elevation_.data() + begin_of(s.periodic_y ? wrap(y, rows_) : clamp_index(y, rows_));
+    std::vector<float> values{row[periodic_x_ ? width_ - 1 : 0]};
+    values.insert(values.end(), row, row + width_);
+    values.push_back(row[periodic_x_ ? 0 : width_ - 1]);
+    return values;
+  };
+  std::vector<float> south = framed(-1), here = framed(0);
+  for (int y = 0; y < rows_; ++y) {
+    std::vector<float> north = framed(y + 1);
+    const std::ptrdiff_t begin = begin_of(y);
+    const auto row = [&](Layer layer) {
+      const std::vector<float>* const values = s.find(layer);
+      return values ? values->data() + begin : nullptr;
+    };
+    law.fill({here.data() + 1, south.data() + 1, north.data() + 1, row(Layer::sand), row(Layer::soil),
+              row(Layer::water), row(Layer::moisture), row(Layer::obstacle), row(Layer::wind_x),
+              row(Layer::wind_y), row(Layer::wind_shadow)},
+             width_,
+             {mobile_.data() + begin, level_.data() + begin, turn_x_.data() + begin, turn_y_.data() + begin});
+    south.swap(here);
+    here.swap(north);
+  }
 }
 
 bool MicroRelief::contains(double x, double y) const {

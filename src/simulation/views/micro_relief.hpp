@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "kernels/micro_relief/relief.hpp"
+#include "src/simulation/views/micro_relief_cells.hpp"
 #include "src/simulation/views/snapshot.hpp"
 
 namespace desert_sim {
@@ -55,6 +56,7 @@ class MicroRelief {
  private:
   void take_feet(const Snapshot& snapshot);
   void fill_cells(const Snapshot& snapshot);
+  void fill_rows(const Snapshot& snapshot, const MicroReliefCells& law);
   bool contains(double x, double y) const;
   /// Of the bilinear surface, at metres from the south-west corner of the terrain.
   double surface(double x, double y) const;

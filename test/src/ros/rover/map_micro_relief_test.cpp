@@ -13,9 +13,11 @@
 #include "src/ros/conversion/micro_relief_message.hpp"
 #include "src/ros/rover/map_ground.hpp"
 #include "src/rover/grid_ground.hpp"
+#include "src/simulation/views/snapshot_source.hpp"
 #include "src/terrain/map_layers.hpp"
 #include "test/support/refusal.hpp"
 #include "test/support/ros/terrain_maps.hpp"
+#include "test/support/scenes.hpp"
 #include "test/support/world.hpp"
 
 namespace desert_sim {
@@ -164,17 +166,25 @@ TEST(MapMicroRelief, MapsWithinTheirThresholdsGiveNearlyTheSameRipples) {
 }
 
 TEST(MapMicroRelief, BeamsHaveThem) {
+  const std::unique_ptr<Exec> exec = make_exec("cpu", 1);
+  Lidar lidar(*exec, test::exact_lidar(12, 200, -40, -2), {});
   for (const std::string& plants : {plants_of_a_layer, live_plants}) {
     const TerrainState state = dunes("periodic", plants);
-    const Snapshot &s = *state.snapshot,
-                   made = MapGround(maps_of(state), capacity, deepest, false).micro_relief()->snapshot();
-    const MicroRelief expected(s), micro_relief(made);
-    const MicroReliefWindow window{-13, 4, 400, 600, 0.08};
-    EXPECT_EQ(0, std::memcmp(micro_relief.elevations(window).data(), expected.elevations(window).data(),
-                             window.points() * sizeof(float)));
-    const std::unique_ptr<Exec> exec = make_exec("cpu", 1);
-    HeightFieldScene scene(*exec, {s.width, s.height, s.cell_size, s.origin_x, s.origin_y});
-    EXPECT_NO_THROW(scene.set_micro_relief(made));
+    const Snapshot& s = *state.snapshot;
+    HeightFieldScene of_snapshot(*exec, {s.width, s.height, s.cell_size, s.origin_x, s.origin_y}),
+        of_maps(*exec, of_snapshot.geometry());
+    of_snapshot.set_micro_relief(source_of(s));
+    of_maps.set_micro_relief(MapGround(maps_of(state), capacity, deepest, false).micro_relief());
+    for (HeightFieldScene* const scene : {&of_snapshot, &of_maps})
+      scene->update(SceneLayer::elevation, s.layers.at(Layer::elevation));
+    for (const double x : {-11.5, 3.0, 17.5}) {
+      const SensorPose pose{{x, 26, 4}};
+      const std::vector<float> expected = lidar.scan(of_snapshot, pose, 0).distances;
+      EXPECT_TRUE(test::same_bits(lidar.scan(of_maps, pose, 0).distances, expected));
+      of_snapshot.clear_micro_relief();
+      EXPECT_FALSE(test::same_bits(lidar.scan(of_snapshot, pose, 0).distances, expected));
+      of_snapshot.set_micro_relief(source_of(s));
+    }
   }
 }
 

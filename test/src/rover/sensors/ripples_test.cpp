@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstring>
 
+#include "src/simulation/views/micro_relief.hpp"
+#include "src/simulation/views/snapshot_source.hpp"
 #include "test/support/scenes.hpp"
 #include "test/support/world.hpp"
 
@@ -44,7 +46,7 @@ struct Scene {
   Scene(Exec& exec, const Snapshot& s)
       : scene(exec, {s.width, s.height, s.cell_size, s.origin_x, s.origin_y}) {
     scene.update(SceneLayer::elevation, s.layers.at(Layer::elevation));
-    scene.set_micro_relief(s);
+    scene.set_micro_relief(source_of(s));
   }
   HeightFieldScene scene;
 };
@@ -93,10 +95,10 @@ TEST_P(BeamsOnRipples, TheyEndOnHeapsAtLivePlants) {
   PlantFeet feet = *moved.feet;
   std::rotate(feet.widest.begin(), feet.widest.begin() + 1, feet.widest.end());
   moved.feet = std::make_shared<const PlantFeet>(feet);
-  known.scene.set_micro_relief(moved);
+  known.scene.set_micro_relief(source_of(moved));
   const std::vector<float> second = lidar.scan(known.scene, pose, 0).distances;
   EXPECT_NE(second, first) << "heaps move with their plants";
-  known.scene.set_micro_relief(with_live_plants(s));
+  known.scene.set_micro_relief(source_of(with_live_plants(s)));
   EXPECT_EQ(0, std::memcmp(lidar.scan(known.scene, pose, 0).distances.data(), first.data(),
                            first.size() * sizeof(float)));
 }
@@ -139,7 +141,7 @@ TEST_P(BeamsOnRipples, WithoutMicroReliefTheGroundIsBilinear) {
 TEST_P(BeamsOnRipples, AnotherGridIsRefused) {
   const Snapshot s = rippled(exec());
   HeightFieldScene other(exec(), {16, 24, 1, 100, -7});
-  EXPECT_THROW(other.set_micro_relief(s), ConfigError);
+  EXPECT_THROW(other.set_micro_relief(source_of(s)), ConfigError);
 }
 
 DESERT_ON_EACH_BACKEND(BeamsOnRipples);
