@@ -2,7 +2,6 @@
 // cells were computed, cells the bits of a plain loop over the whole terrain, and offsets those that follow
 // without patches and heaps that were computed before.
 
-#include <complex>
 #include <cstring>
 
 #include "kernels/sand/saltation_inputs.hpp"
@@ -173,7 +172,8 @@ struct PlainCells {
     const std::vector<float>& z = layer(Layer::elevation);
     for (std::vector<float>* const values : {&mobile, &level, &turn_x, &turn_y}) values->assign(cells, 0.0f);
     const MicroReliefSettings& p = s.micro_relief;
-    const std::complex<float> above(s.wind_above.x, s.wind_above.y);
+    const wind::Vector above = s.wind_above;
+    const float square = above.x * above.x + above.y * above.y;
     for (int y = 0; y < s.height; ++y)
       for (int x = 0; x < s.width; ++x) {
         const auto at = [&](int i, int j) {
@@ -181,11 +181,10 @@ struct PlainCells {
               sample_index({s.width, s.height, 1.0f, s.periodic_x, s.periodic_y}, i, j));
         };
         const std::size_t i = at(x, y);
-        const std::complex<float> turn =
-            std::complex<float>(layer(Layer::wind_x)[i], layer(Layer::wind_y)[i]) / above;
-        turn_x[i] = turn.real();
-        turn_y[i] = turn.imag();
-        const float slope = std::hypot(z[at(x + 1, y)] - z[at(x - 1, y)], z[at(x, y + 1)] - z[at(x, y - 1)]) /
+        const float u = layer(Layer::wind_x)[i], v = layer(Layer::wind_y)[i];
+        turn_x[i] = (u * above.x + v * above.y) / square;
+        turn_y[i] = (v * above.x - u * above.y) / square;
+        const float slope = hypotenuse(z[at(x + 1, y)] - z[at(x - 1, y)], z[at(x, y + 1)] - z[at(x, y - 1)]) /
                             static_cast<float>(2 * s.cell_size);
         if (std::isnan(slope) || std::isnan(z[i])) continue;
         level[i] = 1.0f - micro_relief::smooth_step((slope / p.repose_tangent - 0.75f) * 4.0f);
