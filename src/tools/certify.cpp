@@ -95,6 +95,7 @@ void make_runs(const Certificate& runs, std::vector<std::size_t> numbers, const 
     }
   };
   std::vector<std::thread> workers;
+  workers.reserve(static_cast<std::size_t>(jobs));
   for (int n = 0; n < jobs; ++n) workers.emplace_back(work);
   for (std::thread& worker : workers) worker.join();
 }

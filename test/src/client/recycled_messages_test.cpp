@@ -42,6 +42,7 @@ TEST(RecycledMessages, OutliveWhatMadeThemAndGoBetweenThreads) {
   {
     const Messages messages, copy = messages;
     std::vector<std::thread> threads;
+    threads.reserve(4);
     for (int n = 0; n < 4; ++n)
       threads.emplace_back([messages, n] {
         for (int k = 0; k < 2000; ++k) {
