@@ -129,9 +129,10 @@ TEST_F(Certify, OnlyChoosesAndKeepsTheOthers) {
   EXPECT_TRUE(runs[1].hash);
   EXPECT_EQ(certify({"--only", "b"}).status, 0);
   EXPECT_EQ(certify({"--only", "a"}).status, 1);
-  const auto unknown = certify({"--only", "c"});
+  const auto unknown = certify({"--only", "nothing_like_it"});
   EXPECT_EQ(unknown.status, 2);
-  expect_in("--only c: no run of " + table() + " has 'c' in its name", unknown.err);
+  expect_in("--only nothing_like_it: no run of " + table() + " has 'nothing_like_it' in its name",
+            unknown.err);
 }
 
 TEST_F(Certify, WhatIsNotInstalledIsNamedAndCountsForNothing) {
