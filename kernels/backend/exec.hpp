@@ -105,8 +105,8 @@ class Exec {
   /// A complex 2-D transform of width × height values (x fastest), in place and unnormalised, of `fields`
   /// fields at once.
   virtual std::unique_ptr<Fft> make_fft(int width, int height, int fields, FftMethod method) = 0;
-  /// Shared memory available to a kernel that transforms lines by itself (wind::by_lines()) [bytes]; 0 if the
-  /// device does not support such kernels.
+  /// Shared memory available to a kernel that transforms lines by itself (wind::Workspace::in_one_kernel)
+  /// [bytes]; 0 if the device does not support such kernels.
   virtual std::size_t memory_for_lines() const { return 0; }
 
  protected:

@@ -39,8 +39,8 @@ void coarse_wind(E& exec, const CoarseLaws& laws, const surface::Heights& height
   coarsen_rows(exec, rows);
   bool done = false;
   if constexpr (!vectorises_rows<E>) {
-    if (work.by_lines) transform_by_lines(exec, laws, work);
-    done = work.by_lines;
+    if (work.in_one_kernel) transform_in_one_kernel(exec, laws, work);
+    done = work.in_one_kernel;
   }
   if (!done) transform_pass_by_pass(exec, laws, work);
 }

@@ -55,8 +55,8 @@ namespace wind {
 /// Buffers and transforms of the coarse grid; empty if nothing is computed on it.
 struct Workspace {
   CoarseGrid coarse;
-  std::unique_ptr<Fft> fft_one_field, fft_all_responses;  ///< null if `by_lines`
-  bool by_lines = false;  ///< use transform_by_lines() instead of transform_pass_by_pass()
+  std::unique_ptr<Fft> fft_one_field, fft_all_responses;  ///< null if `in_one_kernel`
+  bool in_one_kernel = false;  ///< use transform_in_one_kernel() instead of transform_pass_by_pass()
   LineTransform lines_along_x, lines_along_y;
   Buffer<Complex> roots_x, roots_y;  ///< their roots of unity
   Buffer<float> row_means;

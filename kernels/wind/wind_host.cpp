@@ -84,10 +84,10 @@ Workspace make_workspace(Exec& exec, const Grid& fine, const WindParameters& p) 
   work.flow_x = on_device(exec, along_x.flow_transfer(least_sigma));
   work.flow_y = on_device(exec, along_y.flow_transfer(least_sigma));
   constexpr int longest_in_one_kernel = 512;  // longer ones are faster in kernels of their own
-  work.by_lines = std::max(c.width, c.height) <= longest_in_one_kernel && has_small_factors(c.width) &&
-                  has_small_factors(c.height) && bytes_for_lines(c, fields) <= exec.memory_for_lines();
+  work.in_one_kernel = std::max(c.width, c.height) <= longest_in_one_kernel && has_small_factors(c.width) &&
+                       has_small_factors(c.height) && bytes_for_lines(c, fields) <= exec.memory_for_lines();
   const FftMethod method = method_of_states(c.width, c.height, FftMethod::columns_first);
-  if (work.by_lines) {
+  if (work.in_one_kernel) {
     work.lines_along_x = LineTransform::for_length(c.width);
     work.lines_along_y = LineTransform::for_length(c.height);
     work.roots_x = on_device(exec, work.lines_along_x.roots());
@@ -96,7 +96,7 @@ Workspace make_workspace(Exec& exec, const Grid& fine, const WindParameters& p) 
     work.fft_one_field = exec.make_fft(c.width, c.height, 1, method);
   }
   if (fields == 0) return work;
-  if (!work.by_lines) work.fft_all_responses = exec.make_fft(c.width, c.height, fields, method);
+  if (!work.in_one_kernel) work.fft_all_responses = exec.make_fft(c.width, c.height, fields, method);
   for (int r = 0; r < radius_count; ++r) {
     const double sigma = 0.5 * p.radii.values[r] / fine.cell_size;
     work.along_x[r] = on_device(exec, along_x.transfer(sigma, fine.cell_size));

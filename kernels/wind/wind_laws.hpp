@@ -85,7 +85,7 @@ inline CoarseLaws coarse_laws(const TerrainView& t, const WindParameters& p, Vec
   return laws;
 }
 
-/// Lines that a thread block of transform_by_lines() transforms at a time.
+/// Lines that a thread block of transform_in_one_kernel() transforms at a time.
 constexpr int lines_per_block = 2;
 
 /// Shared memory of such a block [bytes]: two buffers for each line of each response, between which the

@@ -27,7 +27,7 @@
 namespace desert_sim::wind {
 
 #if CUDART_VERSION < 12000  // never called, because CudaExec::memory_for_lines() is 0
-void transform_by_lines(CudaExec&, const CoarseLaws&, Workspace&) { throw Error("lines need CUDA 12"); }
+void transform_in_one_kernel(CudaExec&, const CoarseLaws&, Workspace&) { throw Error("lines need CUDA 12"); }
 #else
 namespace tuned {
 namespace {
@@ -244,7 +244,7 @@ __global__ void __launch_bounds__(threads, 1) coarse_wind_kernel(DESERT_GRID_CON
 }  // namespace
 }  // namespace tuned
 
-void transform_by_lines(CudaExec& exec, const CoarseLaws& laws, Workspace& work) {
+void transform_in_one_kernel(CudaExec& exec, const CoarseLaws& laws, Workspace& work) {
   using namespace tuned;
   const CoarseGrid& coarse = work.coarse;
   Arguments kernel_arguments{

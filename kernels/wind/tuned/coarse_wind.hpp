@@ -7,7 +7,7 @@
 namespace desert_sim::wind {
 
 /// All passes of transform_pass_by_pass() in one kernel; see coarse_wind.cu.
-void transform_by_lines(CudaExec& exec, const CoarseLaws& laws, Workspace& work);
+void transform_in_one_kernel(CudaExec& exec, const CoarseLaws& laws, Workspace& work);
 /// Row means by way of shared memory; see coarsen_rows.cu.
 void coarsen_rows(CudaExec& exec, const CoarsenRows& law);
 

@@ -39,7 +39,8 @@ class CoarseWind : public test::OnBoth {
     const wind::Vector above{3, -4};
     wind::Workspace host = wind::make_workspace(on_cpu.exec(), on_cpu.grid(), p);
     wind::Workspace device = wind::make_workspace(on_gpu.exec(), on_gpu.grid(), p);
-    ASSERT_TRUE(device.by_lines) << "lines of " << device.coarse.width << " and " << device.coarse.height;
+    ASSERT_TRUE(device.in_one_kernel)
+        << "lines of " << device.coarse.width << " and " << device.coarse.height;
     with_backend(on_gpu.exec(), [&](auto& e) {
       wind::step(e, on_gpu.terrain.view(), p, {above, on_gpu.heights}, {}, device);
     });
