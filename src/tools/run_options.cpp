@@ -7,12 +7,11 @@ namespace desert_sim {
 namespace {
 
 void add_certificate(Options& o) {
-  o.topic("certify", "Whether this machine gives the hashes that every machine gives")
+  o.topic("certify", "Whether this machine gives the hashes that all give")
       .flag(
           "certify",
           "in place of a run: make the runs of config/certificate.json, some at a time, and tell which hash "
-          "is another one (--backend, --threads: of each run, 1 by default)")
-      .essential();
+          "is another one (--backend, --threads: of each run, 1 by default)");
   for (const char* other : {"steps", "duration", "set", "seed", "script", "all-raster-formats", "out",
                             "cross-section", "export", "film", "checkpoint", "resume", "replay", "migrate",
                             "describe", "describe-view", "describe-processes", "pipeline"})
@@ -57,7 +56,7 @@ Options run_options() {
             "read rasters of every format that GDAL reads, also what names other files or hosts (VRT, WMS, "
             "/vsi paths), not only GeoTIFF, ESRI ASCII, ENVI, PNG, EXR and USGS DEM")
       .topic("output", "Rasters, tables and summary of a run")
-      .option("out", "DIR", "write rasters, pictures and summary.json to DIR, which is created if needed")
+      .option("out", "DIR", "write rasters, pictures and summary.json to folder DIR")
       .essential()
       .option("every", "N", "also write them every N steps, to DIR/step_NNNNNNNN")
       .essential()
@@ -103,8 +102,8 @@ Options run_options() {
       .option("checkpoint-every", "N", "also save it every N steps")
       .needs("checkpoint")
       .option("resume", "FILE",
-              "start from a checkpoint (of any scenario; SCENARIO may be omitted), with what --set sets of "
-              "the parameters that can change while a simulation runs")
+              "start from a checkpoint, also without SCENARIO, with --set of parameters that can change "
+              "while a simulation runs")
       .essential()
       .excludes("script")
       .option("replay", "JOURNAL",
@@ -120,9 +119,9 @@ Options run_options() {
             "print the processes of a step of the scenario in order, with layers and memory, and how many "
             "steps a run takes")
       .footer(
-          "Exit status: 0; 1 if a material was lost or gained, or a hash of --certify differs;\n"
-          "2 for invalid input; 3 for a failure at run time; 130 after Ctrl-C, SIGTERM or\n"
-          "SIGHUP. Outputs are written except for 2 and 3.");
+          "Exit status: 0; 1 if a material was lost or gained, or a hash of --certify\n"
+          "differs; 2 for invalid input; 3 for a failure at run time; 130 after Ctrl-C,\n"
+          "SIGTERM or SIGHUP. Outputs are written except for 2 and 3.");
   add_certificate(o);
   return o;
 }

@@ -1,6 +1,7 @@
 // desert_run: outputs, resuming, replaying, interrupting.
 
 #include <csignal>
+#include <sstream>
 
 #include "src/scenario/scenario.hpp"
 #include "src/simulation/session.hpp"
@@ -231,18 +232,20 @@ TEST_F(Run, HelpFitsAScreenAndHasTheRestByTopic) {
   const test::ProgramRun helped = run({"--help"});
   expect_options(helped, {"--steps", "--set", "--out", "--film", "--resume", "--help output"});
   EXPECT_LE(std::count(helped.out.begin(), helped.out.end(), '\n'), 40);
+  std::istringstream lines(helped.out);
+  for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 80U) << line;
   expect_options(run({"--help", "run"}), {"--steps", "--threads", "--backend", "--seed", "--quiet"});
   expect_options(run({"--help", "output"}), {"--out", "--every", "--format", "--probe", "--export"});
   expect_options(run({"--help", "film"}), {"--film", "--film-every", "--view", "--plot"});
   expect_options(run({"--help", "resume"}), {"--checkpoint", "--checkpoint-every", "--resume", "--replay"});
   expect_options(run({"--help", "describe"}), {"--describe", "--describe-view", "--pipeline", "--migrate"});
+  expect_options(run({"--help", "certify"}), {"--certify", "--only", "--jobs", "--table", "--record"});
   expect_options(run({"--help", "all"}), {"--steps", "--out", "--film", "--checkpoint", "--describe"});
   const test::ProgramRun unknown = run({"--help", "flim"});
   EXPECT_EQ(unknown.status, 2);
   EXPECT_EQ(unknown.err,
-            "desert_run: --help flim: there is no such topic, only run, output, film, resume, describe, all; "
-            "did you "
-            "mean 'film'?\n");
+            "desert_run: --help flim: there is no such topic, only run, output, film, resume, describe, "
+            "certify, all; did you mean 'film'?\n");
 }
 
 TEST_F(Run, PlotsARunOverTimeOrSaysWhyNot) {
