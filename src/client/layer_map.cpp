@@ -11,17 +11,9 @@ namespace desert_sim {
 
 namespace {
 
-/// The range of cells in which two rows of values differ, as a rectangle in row 0. They are compared bit
-/// by bit, so that NaN equals NaN.
-LayerMap::Rectangle changed_range(const float* a, const float* b, std::uint32_t cells) {
-  const auto same = [a, b](std::uint32_t first, std::uint32_t count) {
-    return std::memcmp(a + first, b + first, count * sizeof(float)) == 0;
-  };
-  if (same(0, cells)) return {};
-  std::uint32_t first = 0, last = cells - 1;
-  while (same(first, 1)) ++first;
-  while (same(last, 1)) --last;
-  return {first, 0, last - first + 1, 1};
+/// Bit by bit, so that NaN equals NaN.
+bool same_bits(const float* a, const float* b, std::uint32_t cells) {
+  return std::memcmp(a, b, cells * sizeof(float)) == 0;
 }
 
 }  // namespace
@@ -48,15 +40,52 @@ LayerMap::LayerMap(MapKeyframe keyframe, const LayerMap* before, Rectangle& chan
 
   changed = {0, 0, info_.width, info_.height};
   if (!before || !same_geometry(*before)) return;
-  changed = {};
-  for (std::uint32_t y = 0; y < info_.height; ++y)
-    for (std::uint32_t x = 0; x < info_.width; x += row_segment_length(x, info_.width)) {
-      Rectangle cells =
-          changed_range(row_segment(x, y), before->row_segment(x, y), row_segment_length(x, info_.width));
-      cells.x += x;
-      cells.y = y;
-      changed.include(cells);
+  changed = difference(*before);
+}
+
+/// The smallest rectangle with all cells that differ from a map of the same geometry. Cells inside what is
+/// known of it already are not looked at.
+LayerMap::Rectangle LayerMap::difference(const LayerMap& other) const {
+  const auto row_differs = [&](std::uint32_t y) {
+    return first_difference(other, y, 0, info_.width) < info_.width;
+  };
+  std::uint32_t south = 0, north = info_.height, west = info_.width, east = 0;
+  while (south < north && !row_differs(south)) ++south;
+  if (south == north) return {};
+  while (!row_differs(north - 1)) --north;
+  for (std::uint32_t y = south; y < north; ++y) {
+    west = first_difference(other, y, 0, west);
+    east = end_of_difference(other, y, east, info_.width);
+  }
+  return {west, south, east - west, north - south};
+}
+
+/// The first cell of a row from column x on that differs; `end` if none before it does.
+std::uint32_t LayerMap::first_difference(const LayerMap& other, std::uint32_t y, std::uint32_t x,
+                                         std::uint32_t end) const {
+  for (; x < end; x += row_segment_length(x, end)) {
+    const float *a = row_segment(x, y), *b = other.row_segment(x, y);
+    if (same_bits(a, b, row_segment_length(x, end))) continue;
+    while (same_bits(a++, b++, 1)) ++x;
+    return x;
+  }
+  return end;
+}
+
+/// One column beyond the last cell of a row before `end` that differs; `begin` if none from there on does.
+std::uint32_t LayerMap::end_of_difference(const LayerMap& other, std::uint32_t y, std::uint32_t begin,
+                                          std::uint32_t end) const {
+  while (begin < end) {
+    const std::uint32_t x = std::max(begin, (end - 1) / block_side * block_side);
+    const float *a = row_segment(x, y), *b = other.row_segment(x, y);
+    if (same_bits(a, b, end - x)) {
+      end = x;
+      continue;
     }
+    while (same_bits(a + (end - 1 - x), b + (end - 1 - x), 1)) --end;
+    return end;
+  }
+  return begin;
 }
 
 std::shared_ptr<const LayerMap> LayerMap::with_update(const MapUpdate& update) const {

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <type_traits>
 
+#include "src/client/recycled_messages.hpp"
 #include "src/client/ros_time.hpp"
 
 namespace desert_sim {
@@ -79,8 +80,11 @@ ros::Subscriber LayerStream::subscribe(const std::string& topic, std::uint32_t q
   const auto process_message = [stream = weak_from_this()](const boost::shared_ptr<const Message>& message) {
     if (const std::shared_ptr<LayerStream> alive = stream.lock()) alive->process(message);
   };
-  return context_.node.subscribe<Message>(topic, queue, process_message, ros::VoidConstPtr(),
-                                          ros::TransportHints().tcpNoDelay());
+  ros::SubscribeOptions options;
+  options.initByFullCallbackType<const boost::shared_ptr<const Message>&>(topic, queue, process_message,
+                                                                          RecycledMessages<Message>());
+  options.transport_hints = ros::TransportHints().tcpNoDelay();
+  return context_.node.subscribe(options);
 }
 
 void LayerStream::subscribe_to_keyframes() {

@@ -107,6 +107,11 @@ class LayerMap {
     return std::min(end, (x / block_side + 1) * block_side) - x;
   }
   float cell(std::uint32_t x, std::uint32_t y) const { return *row_segment(x, y); }
+  Rectangle difference(const LayerMap& other) const;
+  std::uint32_t first_difference(const LayerMap& other, std::uint32_t y, std::uint32_t x,
+                                 std::uint32_t end) const;
+  std::uint32_t end_of_difference(const LayerMap& other, std::uint32_t y, std::uint32_t begin,
+                                  std::uint32_t end) const;
   void apply_tile(const LayerTile& tile, TileDecoder& reader, const LayerMap& before);
   Block& writable_block(std::uint32_t x, std::uint32_t y, const LayerMap& before);
   std::optional<CellQuad> cells_around(double x, double y) const;
