@@ -3,7 +3,9 @@
 
 #include "kernels/backend/for_each.hpp"
 #include "kernels/backend/loops.hpp"
+#include "kernels/base/math.hpp"
 #include "kernels/field/random.hpp"
+#include "kernels/field/surface_laws.hpp"
 #include "kernels/sand/creep.hpp"
 #include "kernels/sand/repose.hpp"
 #include "src/core/parameter_table.hpp"
@@ -45,15 +47,30 @@ void set_angles(E& exec, const TerrainView& t, const Angle& angle, const ReposeP
                 t.real(Layer::wind_shadow), t.real(Layer::vegetation), repose::RelativeMoisture(t, p)});
 }
 
-/// Heights, impact strengths and winds that the laws below read.
+/// Heights, impact strengths and winds that the laws below read. No branches, so that CPUs vectorise.
 struct Surface {
-  Grid grid;
-  const Quanta *bedrock, *soil, *sand;
-  const float *reptation_strength, *wind_x, *wind_y, *obstacle;
+  /// Of a type that a written change might alter. Otherwise GCC would carry the speed of a cell to the next one
+  /// along a row, whose neighbour it is, and not vectorise.
+  using Wind = float DESERT_MAY_ALIAS;
 
-  DESERT_HD Quanta height(int i) const { return bedrock[i] + value_or_zero(soil, i) + sand[i]; }
+  Grid grid;
+  surface::SolidHeight height;
+  const float* reptation_strength;
+  const Wind *wind_x, *wind_y;
+  const float* obstacle;  ///< any other layer where there are none
+  float least_obstacle;   ///< of which all values are below this then
+
+  Surface(const TerrainView& t, const float* impacts)
+      : grid(t.grid),
+        height(t),
+        reptation_strength(impacts),
+        wind_x(t.real(Layer::wind_x)),
+        wind_y(t.real(Layer::wind_y)),
+        obstacle(t.real(Layer::obstacle) ? t.real(Layer::obstacle) : impacts),
+        least_obstacle(t.real(Layer::obstacle) ? 0.0f : HUGE_VALF) {}
+  DESERT_HD Quanta sand(int i) const { return height.sand[i]; }
   DESERT_HD float speed(int i) const { return hypotenuse(wind_x[i], wind_y[i]); }
-  DESERT_HD bool solid(int i) const { return value_or_zero(obstacle, i) > 0.0f; }
+  DESERT_HD bool solid(int i) const { return obstacle[i] > least_obstacle; }
 };
 
 /// `inside`: for cells that have all their neighbours.
@@ -69,9 +86,9 @@ struct Smooth {
   }
   /// Sand that cell i gives to its neighbour j in direction k [quanta], negative if it receives. The
   /// magnitude is the same whichever of the two cells computes it, because both roll the die of the same one.
-  /// `height`, r and `speed` are those of i.
-  DESERT_HD Quanta flux(int i, Quanta height, float r, float speed, int j, int k) const {
-    const Quanta drop = height - s.height(j), donor = s.sand[drop > 0 ? i : j];
+  /// `height`, `sand`, r and `speed` are those of i.
+  DESERT_HD Quanta flux(int i, Quanta height, Quanta sand, float r, float speed, int j, int k) const {
+    const Quanta drop = height - s.height(j), others = s.sand(j), donor = drop > 0 ? sand : others;
     const float steep = fabsf(static_cast<float>(drop));
     const float wanted = strength * steep / Neighbours::distance(k) * 0.5f * (r + s.reptation_strength[j]) *
                          0.5f * (speed + s.speed(j));
@@ -82,12 +99,15 @@ struct Smooth {
 
   DESERT_HD void operator()(int x, int y) const {
     const int i = s.grid.index(x, y);
-    const Quanta height = s.height(i);
+    const Quanta height = s.height(i), sand = s.sand(i);
     const float r = s.reptation_strength[i], speed = s.speed(i);
     Quanta given = 0;
     unrolled<Neighbours::count>([&](auto k) DESERT_INLINE {
       const int j = neighbour(x + Neighbours::dx(k), y + Neighbours::dy(k));
-      if (j >= 0 && !s.solid(j)) given += flux(i, height, r, speed, j, k);
+      if constexpr (!inside)
+        if (j < 0) return;
+      const Quanta moved = flux(i, height, sand, r, speed, j, k);
+      given += s.solid(j) ? 0 : moved;
     });
     change[i] = s.solid(i) ? 0 : -given;
   }
@@ -136,7 +156,7 @@ struct SteepestEvent {
   DESERT_HD void operator()(int x, int y) const {
     const int i = s.grid.index(x, y);
     const float probability = 1.0f - exp_negative(s.reptation_strength[i]);
-    if (s.sand[i] <= 0 || s.solid(i) || chance(i) >= share * probability) return;
+    if (s.sand(i) <= 0 || s.solid(i) || chance(i) >= share * probability) return;
     creep(x, y, slab);
   }
 };
@@ -147,9 +167,7 @@ void step(E& exec, const TerrainView& t, const ReptationParameters& p, const Ste
   if (!moves_sand(p)) return;
   const float time_step = in.time_step;
   Quanta* const change = in.change;
-  const Surface surface{
-      t.grid,      t.quanta(Layer::bedrock), t.quanta(Layer::soil), t.quanta(Layer::sand),
-      in.strength, t.real(Layer::wind_x),    t.real(Layer::wind_y), t.real(Layer::obstacle)};
+  const Surface surface(t, in.strength);
   const ApplyChange apply{t.grid, change, t.quanta(Layer::sand)};
   if (const float k = smoothing_strength(p); k > 0.0f) {
     const float strength = k * time_step / t.grid.cell_size;
