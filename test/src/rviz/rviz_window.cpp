@@ -13,11 +13,14 @@
 #include <unistd.h>
 
 #include <QImage>
+#include <algorithm>
 #include <chrono>
 #include <csignal>
+#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <set>
 #include <stdexcept>
 
@@ -218,6 +221,17 @@ double resident_megabytes() {
   double pages = 0, resident = 0;
   file >> pages >> resident;
   return resident * static_cast<double>(sysconf(_SC_PAGESIZE)) / 1e6;
+}
+
+double steady_growth_megabytes(const std::function<void()>& round) {
+  double least = std::numeric_limits<double>::infinity();
+  for (int n = 0; n < 4; ++n) {
+    const double before = resident_megabytes();
+    round();
+    std::printf("resident: %.1f MB before, %.1f MB after a round\n", before, resident_megabytes());
+    least = std::min(least, resident_megabytes() - before);
+  }
+  return least;
 }
 
 }  // namespace rviz_test
