@@ -60,10 +60,9 @@ def busy_seconds(cores):
 class Subscriber:
     """A process with a TerrainClient: bench/subscriber.cpp."""
 
-    def __init__(self, counts_bytes):
-        self.process = subprocess.Popen(
-            [program("publishing_subscriber"), "_counts_bytes:=%s" % ("true" if counts_bytes else "false")],
-            stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+    def __init__(self):
+        self.process = subprocess.Popen([program("publishing_subscriber")], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
+                                        text=True)
 
     def say(self, line):
         self.process.stdin.write(line + "\n")
@@ -87,7 +86,8 @@ class LiveNode:
             free.bind(("localhost", 0))
             port = free.getsockname()[1]
         os.environ.update(ROS_MASTER_URI="http://localhost:%d" % port, ROS_HOSTNAME="localhost")
-        os.environ.setdefault("OMP_WAIT_POLICY", "passive")  # as in launch/desert_sim.launch
+        os.environ.setdefault("OMP_WAIT_POLICY", "passive")  # both as in launch/desert_sim.launch
+        os.environ.setdefault("GOMP_SPINCOUNT", "5000")
         os.environ.pop("ROS_IP", None)
         self.master = subprocess.Popen(["rosmaster", "--core", "-p", str(port)], stdout=subprocess.DEVNULL)
         try:
@@ -97,7 +97,7 @@ class LiveNode:
                 time.sleep(0.1)
             rospy.init_node("live_node", disable_signals=True)
             self.node = Node("desert_sim", dict({"backend": "cpu", "threads": CORES, "data_dir": self.folder}, **private))
-            self.subscribers = [Subscriber(counts_bytes=n == 0) for n in range(subscribers)]
+            self.subscribers = [Subscriber() for _ in range(subscribers)]
             self.status()
         except BaseException:
             self.close()
@@ -123,9 +123,10 @@ class LiveNode:
         """A new one; its step is that of its stamp."""
         return self.node.latest("status", SimulationStatus, 30)
 
-    def subscribe(self):
-        for subscriber in self.subscribers:
-            subscriber.say("on")
+    def subscribe(self, counts_bytes=False):
+        """The first of them may also count the bytes of its messages, which costs it a subscription more."""
+        for n, subscriber in enumerate(self.subscribers):
+            subscriber.say("on, with bytes" if counts_bytes and n == 0 else "on")
 
     def sent(self):
         """What each of the subscribers was sent since this was last asked."""

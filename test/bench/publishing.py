@@ -54,7 +54,7 @@ def alternate(live, rounds, seconds):
 def bytes_of_steps(live, steps=10):
     """Bytes of the updates of single steps, and of a keyframe."""
     live.node.call("pause", Trigger)
-    live.subscribe()
+    live.subscribe(counts_bytes=True)
     time.sleep(2)
     for _ in range(steps):
         live.node.call("step", Step, 1)

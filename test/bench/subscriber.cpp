@@ -1,6 +1,7 @@
 /// A subscriber of the publishing benchmark and the soak test: a TerrainClient in a process of its own, as a
-/// planner would have one. Reads lines from its standard input: "on" subscribes, "report" prints as one line
-/// of JSON what came in since the last report, "off" unsubscribes, the end ends it.
+/// planner would have one. Reads lines from its standard input: "on" subscribes, "on, with bytes" does so and
+/// counts the bytes of messages, "report" prints as one line of JSON what came in since the last report, "off"
+/// unsubscribes, the end ends it.
 #include <ros/ros.h>
 
 #include <iostream>
@@ -90,13 +91,12 @@ class Watch {
 
 int main(int argc, char** argv) {
   ros::init(argc, argv, "publishing_subscriber", ros::init_options::AnonymousName);
-  const ros::NodeHandle node("~");
-  const bool counts_bytes = node.param("counts_bytes", false);
+  const ros::NodeHandle node;  // without any, ROS would end between two subscriptions
   ros::AsyncSpinner spinner(1);
   spinner.start();
   std::unique_ptr<Watch> watch;
   for (std::string line; std::getline(std::cin, line);) {
-    if (line == "on") watch = std::make_unique<Watch>(counts_bytes);
+    if (line == "on" || line == "on, with bytes") watch = std::make_unique<Watch>(line != "on");
     if (line == "report" && watch) std::cout << watch->report() << std::endl;
     if (line == "off") watch.reset();
   }
