@@ -11,9 +11,9 @@ namespace desert_sim {
 /// program: that of `body`, 2 for ConfigError, 3 for anything else that is thrown or if the standard output
 /// could not be written. Errors are printed to stderr after the name of the program.
 ///
-/// Before that, a program that was started without OMP_WAIT_POLICY is executed anew with the value `passive`,
-/// as in launch/desert_sim.launch: threads that wait for others then leave the processor to other programs.
-/// OpenMP reads the variable before main() begins.
+/// Before that, a program that was started without OMP_WAIT_POLICY and GOMP_SPINCOUNT is executed anew with
+/// the values of launch/desert_sim.launch: threads that wait for others then soon leave the processor to other
+/// programs. OpenMP reads these variables before main() begins.
 int run_main(Options options, int argc, char** argv, const std::function<int(const Options&)>& body);
 
 }  // namespace desert_sim
