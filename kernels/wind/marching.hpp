@@ -23,7 +23,8 @@ struct Line {
     return {(along_x ? 1 : 2) * (along > 0.0f ? -1 : 1),
             -16 * round_to_int(4096.0f * (across / fabsf(along)))};
   }
-  DESERT_HD bool along_x() const { return heading & 1; }
+  /// Not heading & 1: GCC 12 has no vectors of whole numbers that become truth values.
+  DESERT_HD bool along_x() const { return heading == 1 || heading == -1; }
   DESERT_HD int step() const { return heading > 0 ? 1 : -1; }
   /// Length of a step [cells], 1 … √2.
   DESERT_HD float cells_per_step() const {

@@ -12,18 +12,8 @@
 
 namespace desert_sim::wind_shadow {
 
-/// The longest march for which a CPU uses ShortShadow [steps].
+/// The longest march for which a CPU uses ShadowOfBlock [steps].
 constexpr int short_march = 7;
-
-/// Runs ShortShadow for the actual number of steps, which must not be greater than `longest`.
-template <int longest, class E>
-void short_shadow(E& exec, const Shadow& shadow) {
-  if constexpr (longest > 1)
-    if (shadow.steps < longest) return short_shadow<longest - 1>(exec, shadow);
-  using Inside = ShortShadow<longest>;
-  for_each_cell(exec, shadow.grid(),
-                Bordered<Inside, Shadow>{shadow.grid(), Inside::margin, {shadow}, shadow});
-}
 
 template <class E>
 Shadow straight_shadow(E& exec, const TerrainView& t, const WindShadowParameters& p,
@@ -61,7 +51,7 @@ void step(E& exec, const TerrainView& t, const WindShadowParameters& p, const su
     return;
   }
   if constexpr (vectorises_rows<E>)
-    if (shadow.steps <= short_march) return short_shadow<short_march>(exec, shadow);
+    if (shadow.steps <= short_march) return for_each_cell(exec, shadow.blocks, ShadowOfBlock{shadow});
   const ShadowOfFour four{shadow};
   for_each_cell(exec, four.fours(), four);
 }

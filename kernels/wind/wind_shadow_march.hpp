@@ -144,6 +144,41 @@ struct RiseOverOneCell {
   }
 };
 
+/// The rise over the first cell of a march, for as far as a step [units of height]; 0 where the ground falls.
+struct RiseOverFirstStep {
+  float cells_per_step, along;
+  RiseOverOneCell rise;
+
+  DESERT_HD explicit RiseOverFirstStep(const marching::Line& line)
+      : cells_per_step(line.cells_per_step()),
+        along(1.0f / cells_per_step),
+        rise(along, along * static_cast<float>(line.drift) * (1.0f / 65536.0f)) {}
+  template <class Height>
+  DESERT_HD float operator()(const Height& height) const {
+    return fast_max(0.0f, cells_per_step * rise(height));
+  }
+};
+
+/// The sample of step j, between two cells of a column or row.
+struct StepSample {
+  int drifted;  ///< cells across the march up to the nearer one
+  float per_step, nearer_weight, farther_weight;
+
+  /// `reciprocals`: of Shadow.
+  DESERT_HD StepSample(int j, int drift, const float* reciprocals) {
+    const int place = j * drift;
+    const float one_and = one_plus_fraction(place);
+    drifted = place >> 16;
+    per_step = load_read_only(reciprocals + j);
+    nearer_weight = fused(-one_and, per_step, 2.0f * per_step);
+    farther_weight = fused(one_and, per_step, -per_step);
+  }
+  /// Rise from `base` to it, between heights [units of height per step].
+  DESERT_HD float rise(float base, float nearer, float farther) const {
+    return fused(-per_step, base, nearer * nearer_weight + farther * farther_weight);
+  }
+};
+
 /// Axis of a march, where it is known at compile time and index strides become constants.
 enum class MarchAxis { along_x, along_y, either };
 
@@ -203,8 +238,7 @@ struct Shadow {
   DESERT_HD void rise_over_one_cell(const CellGroup<axis, count>& cells, float (&steepest)[count]) const {
     for (float& s : steepest) s = 0.0f;
     if (!cells.line.is_oblique()) return;
-    const float cells_per_step = cells.line.cells_per_step(), along = 1.0f / cells_per_step;
-    const RiseOverOneCell rise(along, along * static_cast<float>(cells.line.drift) * (1.0f / 65536.0f));
+    const RiseOverFirstStep rise(cells.line);
     float h[3][count + 2];  // from the row behind to the row ahead
     for (int row = 0; row < 3; ++row)
       for (int k = 0; k < count + 2; ++k)
@@ -214,23 +248,18 @@ struct Shadow {
                 : height(cells, k - 1, row - 1, 0);
     DESERT_SIMD
     for (int k = 0; k < count; ++k)
-      steepest[k] = fast_max(
-          0.0f, cells_per_step * rise([&](int a, int b) DESERT_INLINE { return h[a + 1][k + 1 + b]; }));
+      steepest[k] = rise([&](int a, int b) DESERT_INLINE { return h[a + 1][k + 1 + b]; });
   }
 
   /// Updates the steepest rises with the samples of step j [quanta per step].
   template <bool inside, MarchAxis axis, int count>
   DESERT_HD void sample_step(const CellGroup<axis, count>& cells, int j, float (&steepest)[count]) const {
-    const int place = j * cells.line.drift, drifted = place >> 16;
-    const float per_step = load_read_only(reciprocals + j), one_and = one_plus_fraction(place);
-    const float nearer_weight = fused(-one_and, per_step, 2.0f * per_step),
-                farther_weight = fused(one_and, per_step, -per_step);
+    const StepSample sample(j, cells.line.drift, reciprocals);
     float h[count + 1];
     for (int k = 0; k <= count; ++k)
-      h[k] = inside ? cells.height(k, j, drifted) : height(cells, k, j, drifted);
+      h[k] = inside ? cells.height(k, j, sample.drifted) : height(cells, k, j, sample.drifted);
     for (int k = 0; k < count; ++k)
-      steepest[k] = fast_max(
-          steepest[k], fused(-per_step, cells.base[k], h[k] * nearer_weight + h[k + 1] * farther_weight));
+      steepest[k] = fast_max(steepest[k], sample.rise(cells.base[k], h[k], h[k + 1]));
   }
 
   /// Finds the steepest rises within `end` steps [quanta per step]; `inside`: the whole march is on the grid.

@@ -1,6 +1,6 @@
 #pragma once
-/// Faster forms of the straight march, with the bits of Shadow (wind_shadow_march.hpp): four cells at a time
-/// for GPUs, and short marches without branches, which a CPU works on as vectors.
+/// Faster forms of the straight march, with the bits of Shadow (wind_shadow_march.hpp): four cells across the
+/// march at a time, and all cells of a block, for the vectors of a CPU.
 
 #include "kernels/wind/wind_shadow_march.hpp"
 
@@ -36,25 +36,68 @@ struct ShadowOfFour {
   }
 };
 
-/// Marches of at most `longest` steps, from cells farther than that from every edge. They have no branch, so
-/// that a CPU vectorises them over cells (SIMD).
-template <int longest>
-struct ShortShadow {
-  static constexpr int margin = longest + 1;
+/// Wind shadow of the cells of a block, which have one direction: the four cells of its rows are vectors of a
+/// CPU. Called for each block; for marches that are too short to skip pieces of them.
+struct ShadowOfBlock {
+  static constexpr int cells_of_a_call = side * side;
   Shadow shadow;  ///< its march_directions must not be null
 
-  DESERT_HD void operator()(int x, int y) const {
-    const MarchDirection c = shadow.march_directions[y / side * shadow.blocks.width + x / side];
-    const int end = shadow.steps_of(c);
-    const Shadow::CellGroup<MarchAxis::either, 1> cell(shadow, c.line(), x, y);
-    float steepest[1];
-    shadow.rise_over_one_cell<true>(cell, steepest);
-    unrolled<longest>([&](auto n) DESERT_INLINE {
-      float found[1] = {steepest[0]};
-      shadow.sample_step<true>(cell, n + 1, found);
-      steepest[0] = n + 1 <= end ? found[0] : steepest[0];
+  DESERT_HD void operator()(int column, int row) const {
+    const Grid& g = shadow.grid();
+    const MarchDirection c = shadow.march_directions[shadow.blocks.index(column, row)];
+    const int x0 = side * column, y0 = side * row;
+    if (is_far_from_edges(x0, g.width) && is_far_from_edges(y0, g.height)) {
+      compute_shadow(c, g.index(x0, y0));
+      return;
+    }
+    for (int y = y0; y < y0 + side && y < g.height; ++y)
+      for (int x = x0; x < x0 + side && x < g.width; ++x)
+        shadow.compute_shadow<MarchAxis::either, 1>(c, x, y);
+  }
+
+ private:
+  /// Whether no march from the cells n … n + side − 1 of an axis reaches beyond its ends.
+  DESERT_HD bool is_far_from_edges(int n, int cells) const {
+    const int reach = shadow.steps + 1;
+    return n >= reach && n + side <= cells - reach;
+  }
+
+  /// Calls body(row, k, cell) for each cell; `cell` is its index behind the south-western one.
+  template <class Body>
+  DESERT_HD static void for_each_cell_of_block(int width, const Body& body) {
+    for (int row = 0; row < side; ++row) {
+      DESERT_SIMD
+      for (int k = 0; k < side; ++k) body(row, k, row * width + k);
+    }
+  }
+
+  /// `first`: the south-western cell.
+  DESERT_HD void compute_shadow(const MarchDirection& c, int first) const {
+    const marching::Line line = c.line();
+    const int width = shadow.grid().width, end = shadow.steps_of(c);
+    const int along = line.step() * (line.along_x() ? 1 : width), across = line.along_x() ? width : 1;
+    const float* const base = shadow.heights + first;
+    float steepest[side][side] = {};
+    if (line.is_oblique()) {
+      const RiseOverFirstStep rise(line);
+      for_each_cell_of_block(width, [&](int row, int k, int cell) DESERT_INLINE {
+        steepest[row][k] =
+            rise([&](int a, int b) DESERT_INLINE { return base[cell + (a * along + b * across)]; });
+      });
+    }
+    for (int j = 1; j <= end; ++j) {
+      const StepSample sample(j, line.drift, shadow.reciprocals);
+      const float *const nearer = base + (j * along + sample.drifted * across), *const farther = nearer + across;
+      for_each_cell_of_block(width, [&](int row, int k, int cell) DESERT_INLINE {
+        steepest[row][k] = fast_max(steepest[row][k], sample.rise(base[cell], nearer[cell], farther[cell]));
+      });
+    }
+    const ShadowFromSlope shadow_from_slope = shadow.shadow_from_slope;
+    const float steps_per_cell = c.steps_per_cell;
+    float* const to = shadow.wind_shadow + first;
+    for_each_cell_of_block(width, [&](int row, int k, int cell) DESERT_INLINE {
+      to[cell] = shadow_from_slope(steepest[row][k] * steps_per_cell);
     });
-    shadow.wind_shadow[cell.first] = shadow.shadow_from_slope(steepest[0] * c.steps_per_cell);
   }
 };
 
