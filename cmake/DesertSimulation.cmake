@@ -82,6 +82,7 @@ if(DESERT_WITH_ROS)
     target_compile_options(desert_ros PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
     # It hands on what other libraries compute; -O2 takes a third longer to compile.
     target_compile_options(desert_ros PRIVATE $<$<CONFIG:Release>:-O1>)
+    set_source_files_properties(src/ros/topics/layer_tile_message.cpp PROPERTIES COMPILE_OPTIONS "${DESERT_LOOP_OPTIONS}")
     desert_unity(desert_ros 37) # two units, one for each of two processors, because most of their time is ROS's headers
   endif()
   # Apart from desert_ros: what registers a plugin may only be loaded by who looks for plugins.

@@ -12,8 +12,8 @@
 
 namespace desert_sim::wind_shadow {
 
-/// The longest march for which a CPU uses ShadowOfBlock [steps].
-constexpr int short_march = 7;
+/// Steps of a march up to which vectors of cells are faster on a CPU than to skip pieces.
+constexpr int short_march = 20;
 
 template <class E>
 Shadow straight_shadow(E& exec, const TerrainView& t, const WindShadowParameters& p,
@@ -51,7 +51,8 @@ void step(E& exec, const TerrainView& t, const WindShadowParameters& p, const su
     return;
   }
   if constexpr (vectorises_rows<E>)
-    if (shadow.steps <= short_march) return for_each_cell(exec, shadow.blocks, ShadowOfBlock{shadow});
+    if (!shadow.highest_nearby || shadow.steps <= short_march)
+      return for_each_cell(exec, shadow.blocks, ShadowOfBlock{shadow});
   const ShadowOfFour four{shadow};
   for_each_cell(exec, four.fours(), four);
 }

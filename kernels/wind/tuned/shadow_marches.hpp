@@ -37,7 +37,7 @@ struct ShadowOfFour {
 };
 
 /// Wind shadow of the cells of a block, which have one direction: the four cells of its rows are vectors of a
-/// CPU. Called for each block; for marches that are too short to skip pieces of them.
+/// CPU. Called for each block; no pieces of a march are skipped.
 struct ShadowOfBlock {
   static constexpr int cells_of_a_call = side * side;
   Shadow shadow;  ///< its march_directions must not be null
