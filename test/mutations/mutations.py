@@ -381,7 +381,7 @@ MUTATIONS = [Mutation(*row) for row in (
      "wind shadow is full at its angle", "kernels_unit *WindLaw.Shadow*"),
     ("march_ends_at_half_a_shadow", "kernels/wind/wind_shadow_march.hpp",
      "min_of(steepest) < full_rise;", "min_of(steepest) < 0.5f * full_rise;",
-     "a march ends early only where the shadow is full", "kernels_unit ShortShadow.*"),
+     "a march ends early only where the shadow is full", "kernels_unit ShadowOfBlock.*"),
     ("march_skips_ground_by_its_far_end", "kernels/wind/wind_shadow_march.hpp",
      "start_rise), static_cast<float>(first), cells.base[k]);",
      "start_rise), static_cast<float>(last), cells.base[k]);",

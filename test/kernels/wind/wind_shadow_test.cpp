@@ -58,14 +58,14 @@ std::vector<float> one_by_one(const test::BenchTerrain& t, const WindShadowParam
   return shadow;
 }
 
-TEST(ShortShadow, IsThatOfMarchesOneByOne) {
+TEST(ShadowOfBlock, IsThatOfMarchesOneByOne) {
   CpuExec exec(3);
   for (const auto& [width, height] :
        {std::pair{203, 150}, std::pair{64, 17}, std::pair{9, 40}, std::pair{3, 3}})
     for (bool periodic : {true, false}) {
       test::BenchTerrain t(exec, width, height, 2.0, periodic);
       make_weather(t);
-      for (double cells : {0.5, 1.0, 2.0, 3.0, 3.5, 4.0, 5.0, 6.0, 7.0, 8.0, 12.0}) {
+      for (double cells : {0.5, 1.0, 2.0, 3.0, 3.5, 4.0, 5.0, 6.0, 7.0, 12.0, 20.0, 30.0}) {
         WindShadowParameters p;
         p.distance = static_cast<float>(2 * cells);
         t.shadow(p, true);
