@@ -49,8 +49,8 @@ void set_angles(E& exec, const TerrainView& t, const Angle& angle, const ReposeP
 
 /// Heights, impact strengths and winds that the laws below read. No branches, so that CPUs vectorise.
 struct Surface {
-  /// Of a type that a written change might alter. Otherwise GCC would carry the speed of a cell to the next one
-  /// along a row, whose neighbour it is, and not vectorise.
+  /// Of a type that a written change might alter. Otherwise GCC would carry the speed of a cell to the next
+  /// one along a row, whose neighbour it is, and not vectorise.
   using Wind = float DESERT_MAY_ALIAS;
 
   Grid grid;

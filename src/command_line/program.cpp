@@ -17,8 +17,9 @@ namespace desert_sim {
 
 namespace {
 
-/// How often a waiting thread looks for work before it sleeps: for about a tenth of a millisecond, as long as most
-/// waits take. One that sleeps at once is late when it is woken, by a slice of any other program on its processor.
+/// How often a waiting thread looks for work before it sleeps: for about a tenth of a millisecond, as long as
+/// most waits take. One that sleeps at once is late when it is woken, by a slice of any other program on its
+/// processor.
 constexpr const char* spins = "5000";
 
 /// Does nothing if the user has chosen how threads wait, by OpenMP's variable or by one of GCC's runtime.

@@ -12,8 +12,8 @@ namespace desert_sim {
 /// could not be written. Errors are printed to stderr after the name of the program.
 ///
 /// Before that, a program that was started without OMP_WAIT_POLICY and GOMP_SPINCOUNT is executed anew with
-/// the values of launch/desert_sim.launch: threads that wait for others then soon leave the processor to other
-/// programs. OpenMP reads these variables before main() begins.
+/// the values of launch/desert_sim.launch: threads that wait for others then soon leave the processor to
+/// other programs. OpenMP reads these variables before main() begins.
 int run_main(Options options, int argc, char** argv, const std::function<int(const Options&)>& body);
 
 }  // namespace desert_sim

@@ -1,7 +1,7 @@
 /// A subscriber of the publishing benchmark and the soak test: a TerrainClient in a process of its own, as a
 /// planner would have one. Reads lines from its standard input: "on" subscribes, "on, with bytes" does so and
-/// counts the bytes of messages, "report" prints as one line of JSON what came in since the last report, "off"
-/// unsubscribes, the end ends it.
+/// counts the bytes of messages, "report" prints as one line of JSON what came in since the last report,
+/// "off" unsubscribes, the end ends it.
 #include <ros/ros.h>
 
 #include <iostream>

@@ -83,8 +83,8 @@ struct Status {
 Status status(rviz::Display* display, const std::string& name);
 /// Memory of this process that is in use [MB].
 double resident_megabytes();
-/// By how much that grows in the one of four rounds in which it grows least [MB]. A leak grows in every round; what
-/// a library takes once (OGRE and its driver: 17 MB), at a time of its own, is none.
+/// By how much that grows in the one of four rounds in which it grows least [MB]. A leak grows in every
+/// round; what a library takes once (OGRE and its driver: 17 MB), at a time of its own, is none.
 double steady_growth_megabytes(const std::function<void()>& round);
 
 }  // namespace rviz_test
