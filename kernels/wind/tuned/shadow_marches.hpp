@@ -87,8 +87,8 @@ struct ShadowOfBlock {
     }
     for (int j = 1; j <= end; ++j) {
       const StepSample sample(j, line.drift, shadow.reciprocals);
-      const float *const nearer = base + (j * along + sample.drifted * across), *const farther =
-                                                                                    nearer + across;
+      const float* const nearer = base + (j * along + sample.drifted * across);
+      const float* const farther = nearer + across;
       for_each_cell_of_block(width, [&](int row, int k, int cell) DESERT_INLINE {
         steepest[row][k] = fast_max(steepest[row][k], sample.rise(base[cell], nearer[cell], farther[cell]));
       });
