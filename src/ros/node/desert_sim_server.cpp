@@ -99,7 +99,7 @@ DesertSimServer::DesertSimServer(const ros::NodeHandle& private_node, const Mono
   SimulationThread::Options options = options_of(p);
   options.clock = &clock;
   if (p.publish_clock) {
-    clock_ = std::make_unique<ClockPublisher>();
+    clock_ = std::make_unique<ClockPublisher>(node_);
     if (!ros::Time::isSimTime())
       ROS_WARN("publish_clock is true, but use_sim_time is not: no node follows /clock.");
     options.publish_clock = [this](double seconds) { clock_->publish(seconds); };
