@@ -4,8 +4,8 @@ subscribers to keyframes at 5 Hz and all updates, in turns. After `. build/devel
 
     test/bench/publishing.py [--scenario barchan] [--size 1024] [--rounds 6] [--seconds 8] [--json]
 
-Aims: the step rate with subscribers at least 90 % of that without, the 99th percentile of the latency of updates under
-50 ms, updates of a step under 10 % of a keyframe. The exit status is 0 whether they are met or not: a machine that does
+Aims: the step rate with subscribers at least 95 % of that without, the 99th percentile of the latency of updates under
+10 ms, updates of a step under 10 % of a keyframe. The exit status is 0 whether they are met or not: a machine that does
 other things as well misses them, and the table says how busy it was.
 """
 import argparse
@@ -95,10 +95,10 @@ def run(arguments):
 def print_table(r):
     print("%s, %d x %d cells, %d cores; three subscribers to keyframes (%.1f a second) and updates (%.1f a second)" % (
         r["scenario"], r["size"], r["size"], CORES, r["keyframes_per_second"], r["updates_per_second"]))
-    print("  steps a second       %8.2f alone, %.2f with subscribers: cost %.1f %% (aim: under 10; rounds: %s)" % (
+    print("  steps a second       %8.2f alone, %.2f with subscribers: cost %.1f %% (aim: under 5; rounds: %s)" % (
         r["steps_per_second_alone"], r["steps_per_second_subscribed"], 100 * r["step_rate_cost"],
         ", ".join("%.1f" % (100 * cost) for cost in r["cost_of_rounds"])))
-    print("  latency of updates   %8.1f ms at the median, %.1f at the 99th percentile (aim: under 50), %.1f at most, of %d" % (
+    print("  latency of updates   %8.1f ms at the median, %.1f at the 99th percentile (aim: under 10), %.1f at most, of %d" % (
         tuple(r["latency_ms"][key] for key in ("median", "p99", "max", "count"))))
     print("  update of a step     %8d bytes, %.1f %% of a keyframe's %d at 1 cm (aim: under 10)" % (
         r["update_bytes"], 100 * r["update_share"], r["keyframe_bytes"]))

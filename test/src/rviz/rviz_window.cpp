@@ -228,8 +228,9 @@ double steady_growth_megabytes(const std::function<void()>& round) {
   for (int n = 0; n < 4; ++n) {
     const double before = resident_megabytes();
     round();
-    std::printf("resident: %.1f MB before, %.1f MB after a round\n", before, resident_megabytes());
-    least = std::min(least, resident_megabytes() - before);
+    const double after = resident_megabytes();
+    std::printf("resident: %.1f MB before, %.1f MB after a round\n", before, after);
+    least = std::min(least, after - before);
   }
   return least;
 }
