@@ -136,6 +136,18 @@ Journal read_journal(const std::string& path) {
   return journal;
 }
 
+void make_way_for_journal(const std::string& path) {
+  namespace fs = std::filesystem;
+  if (path.empty()) return;
+  std::error_code error;
+  fs::create_directories(fs::absolute(path).parent_path(), error);
+  if (error) throw ConfigError(path + ": the folder of the journal cannot be made: " + error.message());
+  if (!fs::is_regular_file(path, error)) return;
+  fs::rename(path, previous_journal(path), error);
+  if (error)
+    throw ConfigError(path + ": the previous journal cannot be renamed to *.previous: " + error.message());
+}
+
 std::vector<std::string> checkpoints_of_previous(const std::string& path) {
   if (path.empty() || !std::filesystem::exists(previous_journal(path))) return {};
   try {

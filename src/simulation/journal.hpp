@@ -49,6 +49,10 @@ std::vector<std::string> checkpoints_of(const Journal& journal);
 
 /// The path of the journal that was at `path` before: a node gives it this name.
 inline std::string previous_journal(const std::string& path) { return path + ".previous"; }
+/// For a node that will write a journal at `path`, unless that is empty: makes its folder where it is
+/// missing, and gives an older journal, which can explain why a run failed, the name previous_journal().
+/// Throws ConfigError.
+void make_way_for_journal(const std::string& path);
 /// The paths of the checkpoints that the journal before the one at `path` loads; none if `path` is empty or
 /// there is no such journal. One that cannot be read is an error in the log.
 std::vector<std::string> checkpoints_of_previous(const std::string& path);

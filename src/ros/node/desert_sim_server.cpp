@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 
 #include "src/core/log.hpp"
 #include "src/grid_map/grid_map_bag.hpp"
@@ -15,15 +14,6 @@ namespace desert_sim {
 namespace {
 
 constexpr std::uint32_t threads = 4, step_threads = 2;
-
-/// Renames an old journal: it can explain why a run failed, so the run that follows must not overwrite it.
-void keep_previous_journal(const std::string& path) {
-  std::error_code error;
-  if (path.empty() || !std::filesystem::is_regular_file(path, error)) return;
-  std::filesystem::rename(path, previous_journal(path), error);
-  if (error)
-    throw ConfigError(path + ": the previous journal cannot be renamed to *.previous: " + error.message());
-}
 
 SimulationThread::Options options_of(const NodeParameters& p) {
   SimulationThread::Options options;
@@ -93,13 +83,13 @@ DesertSimServer::DesertSimServer(const ros::NodeHandle& private_node, const Mono
   const NodeParameters& p = setup.node;
   resolve_grid(setup.scenario, raster_loader_with_bags({"", p.all_raster_formats}));
   check_map_sizes(setup.publishers.maps, setup.scenario.grid);
-  keep_previous_journal(p.journal);
+  make_way_for_journal(p.journal);
   files_ = std::make_unique<DataFolder>(p.data_dir);
   frames_ = std::make_unique<Frames>(p.frame_id);
   SimulationThread::Options options = options_of(p);
   options.clock = &clock;
   if (p.publish_clock) {
-    clock_ = std::make_unique<ClockPublisher>(node_);
+    clock_ = std::make_unique<ClockPublisher>();
     if (!ros::Time::isSimTime())
       ROS_WARN("publish_clock is true, but use_sim_time is not: no node follows /clock.");
     options.publish_clock = [this](double seconds) { clock_->publish(seconds); };

@@ -1,6 +1,5 @@
 #include "src/ros/node/reconfigure.hpp"
 
-#include <dynamic_reconfigure/ConfigDescription.h>
 #include <ros/console.h>
 #include <ros/serialization.h>
 
@@ -26,11 +25,10 @@ Reconfigure::Reconfigure(ros::NodeHandle node, SimulationThread& simulation, Top
                          double answer_timeout)
     : simulation_(simulation), publisher_(publisher), answer_timeout_(answer_timeout) {
   const LiveParameters defaults = present();
-  descriptions_ = node.advertise<dynamic_reconfigure::ConfigDescription>("parameter_descriptions", 1, true);
-  updates_ = node.advertise<dynamic_reconfigure::Config>("parameter_updates", 1, true);
+  descriptions_ = {node, "parameter_descriptions", 1};
+  updates_ = {node, "parameter_updates", 1};
   if (!descriptions_ || !updates_) return;  // ROS is shutting down and advertises nothing any more
-  descriptions_.publish(
-      boost::make_shared<dynamic_reconfigure::ConfigDescription>(reconfigure_description(defaults)));
+  descriptions_.publish(reconfigure_description(defaults));
   publish(reconfigure_values(defaults));
   auto options = service_with_reason<dynamic_reconfigure::Reconfigure>(
       "set_parameters", [this](const Request& request, Response& response) {

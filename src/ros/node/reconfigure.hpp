@@ -3,6 +3,7 @@
 /// parameter tables are the description. It has ~parameter_descriptions, ~parameter_updates and
 /// ~set_parameters, as clients expect.
 
+#include <dynamic_reconfigure/ConfigDescription.h>
 #include <dynamic_reconfigure/Reconfigure.h>
 #include <ros/node_handle.h>
 #include <ros/wall_timer.h>
@@ -11,6 +12,7 @@
 
 #include "src/ros/parameters/reconfigure_messages.hpp"
 #include "src/ros/simulation/simulation_thread.hpp"
+#include "src/ros/support/latched_publisher.hpp"
 #include "src/ros/topics/topic_publisher.hpp"
 
 namespace desert_sim {
@@ -43,7 +45,8 @@ class Reconfigure {
   std::uint64_t seen_commands_ = 0;    ///< of the simulation
   std::uint64_t seen_publishers_ = 0;  ///< changes of the parameters of topics
   double seen_rate_ = -1;              ///< step rate [steps/s]
-  ros::Publisher descriptions_, updates_;
+  LatchedPublisher<dynamic_reconfigure::ConfigDescription> descriptions_;
+  LatchedPublisher<dynamic_reconfigure::Config> updates_;
   ros::ServiceServer service_;
   ros::WallTimer timer_;
 };

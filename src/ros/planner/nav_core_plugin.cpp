@@ -24,6 +24,7 @@
 #include "src/planner/field_planner.hpp"
 #include "src/planner/grid_path.hpp"
 #include "src/ros/planner/planner_messages.hpp"
+#include "src/ros/support/latched_publisher.hpp"
 
 namespace desert_sim {
 
@@ -38,7 +39,7 @@ class FieldGlobalPlanner : public nav_core::BaseGlobalPlanner {
     node.param("escape", escape_, escape_);
     node.param("allow_unknown", allow_unknown_, allow_unknown_);
     parameters_.radius = 0;  // the costmap is inflated
-    path_ = node.advertise<nav_msgs::Path>("plan", 1, true);
+    path_ = {node, "plan", 1};
     CostGrid({1, 1, 1, 0, 0}, parameters_);  // throws for parameters out of range
   }
 
@@ -132,7 +133,7 @@ class FieldGlobalPlanner : public nav_core::BaseGlobalPlanner {
   std::unique_ptr<FieldPlanner> field_;
   std::vector<unsigned char> costs_;
   std::vector<CellIndex> changed_;
-  ros::Publisher path_;
+  LatchedPublisher<nav_msgs::Path> path_;
 };
 
 }  // namespace desert_sim

@@ -42,8 +42,8 @@ PlannerServer::PlannerServer(const ros::NodeHandle& node, const ros::NodeHandle&
   private_node_.setCallbackQueue(&queue_);
   if (setup_.planner.planner == PlannerKind::ompl)
     navigator_.set_layer_source([this](const GridFrame& frame) { return terrain_.layers(frame); });
-  path_publisher_ = private_node_.advertise<nav_msgs::Path>("path", 1, true);
-  status_publisher_ = private_node_.advertise<PlannerStatus>("status", 100, true);
+  path_publisher_ = {private_node_, "path", 1};
+  status_publisher_ = {private_node_, "status", 100};
   command_publisher_ = node_.advertise<geometry_msgs::Twist>("cmd_vel", 1);
   const std::string goals = setup_.node.goal_topic.empty() ? "move_base_simple/goal" : setup_.node.goal_topic;
   goal_subscriber_ = node_.subscribe(goals, 1, &PlannerServer::receive_goal, this);

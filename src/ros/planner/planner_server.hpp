@@ -27,6 +27,7 @@
 #include "src/ros/planner/planner_messages.hpp"
 #include "src/ros/planner/planner_terrain.hpp"
 #include "src/ros/support/action_server.hpp"
+#include "src/ros/support/latched_publisher.hpp"
 
 namespace desert_sim {
 
@@ -99,7 +100,9 @@ class PlannerServer {
   double forecast_progress_ = 0;  ///< of the one that is under way
   std::chrono::steady_clock::time_point last_status_;
 
-  ros::Publisher path_publisher_, status_publisher_, command_publisher_;
+  LatchedPublisher<nav_msgs::Path> path_publisher_;
+  LatchedPublisher<PlannerStatus> status_publisher_;
+  ros::Publisher command_publisher_;
   ros::Subscriber goal_subscriber_, status_subscriber_, truth_subscriber_, forecast_subscriber_;
   ros::ServiceServer cancel_server_;
   std::string drive_service_;  ///< in lockstep

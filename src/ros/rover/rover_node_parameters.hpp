@@ -100,10 +100,10 @@ constexpr auto parameter_table(const RoverNodeParameters*) {
       parameter("data_dir", &P::data_dir,
                 "States of the rover lie below this folder; empty: desert_sim in ROS's own "
                 "folder ($ROS_HOME, or ~/.ros)."),
-      parameter("journal", &P::journal,
-                "File for the journal of all that the rover was told and drove on; one of that name gets the "
-                "ending "
-                ".previous. Empty: none."),
+      parameter(
+          "journal", &P::journal,
+          "File for the journal of all that the rover was told and drove on, whose folder is made where it "
+          "is missing; one of that name gets the ending .previous. Empty: none."),
       parameter("micro_relief", &P::micro_relief,
                 "Whether wheels and beams meet ripples and bumps (section micro_relief of the terrain's "
                 "scenario)."),

@@ -11,10 +11,10 @@ bool is_lockstep(const RoverSetup& setup) { return setup.node.clock == RoverCloc
 
 RoverPublisher::RoverPublisher(ros::NodeHandle node, ros::NodeHandle private_node, const RoverSetup& setup)
     : setup_(setup),
-      odom_(node.advertise<nav_msgs::Odometry>("odom", 10, is_lockstep(setup))),
-      ground_truth_(node.advertise<nav_msgs::Odometry>("ground_truth", 10, is_lockstep(setup))),
-      joint_states_(node.advertise<sensor_msgs::JointState>("joint_states", 10, is_lockstep(setup))),
-      imu_(node.advertise<sensor_msgs::Imu>("imu", 10, is_lockstep(setup))),
+      odom_(node, "odom", 10, is_lockstep(setup)),
+      ground_truth_(node, "ground_truth", 10, is_lockstep(setup)),
+      joint_states_(node, "joint_states", 10, is_lockstep(setup)),
+      imu_(node, "imu", 10, is_lockstep(setup)),
       status_(private_node.advertise<RoverStatus>("status", 100, true)) {}
 
 void RoverPublisher::publish_pose(const Rover& rover, const ros::Time& stamp,

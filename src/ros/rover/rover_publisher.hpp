@@ -9,6 +9,7 @@
 #include <string>
 
 #include "src/ros/rover/rover_messages.hpp"
+#include "src/ros/support/latched_publisher.hpp"
 
 namespace desert_sim {
 
@@ -25,7 +26,10 @@ class RoverPublisher {
 
  private:
   const RoverSetup setup_;
-  ros::Publisher odom_, ground_truth_, joint_states_, imu_, status_;
+  LatchedPublisher<nav_msgs::Odometry> odom_, ground_truth_;
+  LatchedPublisher<sensor_msgs::JointState> joint_states_;
+  LatchedPublisher<sensor_msgs::Imu> imu_;
+  ros::Publisher status_;  ///< goes on while the rover stands: need not be published again
   tf2_ros::TransformBroadcaster broadcaster_;
   ros::Time last_stamp_, last_terrain_stamp_;
   std::uint64_t last_commands_ = 0;

@@ -4,7 +4,6 @@
 #include <ros/init.h>
 
 #include <algorithm>
-#include <filesystem>
 
 #include "src/client/ros_time.hpp"
 #include "src/core/constants.hpp"
@@ -23,17 +22,10 @@ constexpr std::uint32_t callback_threads = 2;
 constexpr auto patience = std::chrono::milliseconds(50);
 constexpr double longest_pause = 1;  // [s] of ROS time between two poses; what is more is left out
 
-/// Renames an old journal, which can explain why a run failed.
 std::unique_ptr<RoverJournalWriter> start_journal(const RoverNodeParameters& p, const Rover& rover) {
-  const std::string& path = p.journal;
-  if (path.empty()) return nullptr;
-  std::error_code error;
-  if (std::filesystem::is_regular_file(path, error)) {
-    std::filesystem::rename(path, previous_journal(path), error);
-    if (error)
-      throw ConfigError(path + ": the previous journal cannot be renamed to *.previous: " + error.message());
-  }
-  return std::make_unique<RoverJournalWriter>(path, rover, p.micro_relief);
+  if (p.journal.empty()) return nullptr;
+  make_way_for_journal(p.journal);
+  return std::make_unique<RoverJournalWriter>(p.journal, rover, p.micro_relief);
 }
 
 SensorFrames sensor_frames(const RoverSetup& setup) {

@@ -44,30 +44,20 @@ ros::Time clock_time(double seconds) {
   return std::max(ros::Time(seconds), ros::Time(0, 1));
 }
 
-ClockPublisher::ClockPublisher(ros::NodeHandle& node) {
+ClockPublisher::ClockPublisher() {
   const std::string other = other_publisher();
   if (!other.empty())
     throw ConfigError(
         "publish_clock: " + other +
         " already publishes /clock, and with two publishers the time would jump back and forth; stop "
         "that node, or set publish_clock to false and use_sim_time to true to follow its clock");
-  publisher_ = node.advertise<rosgraph_msgs::Clock>(
-      clock_topic, 100, [this](const ros::SingleSubscriberPublisher&) { publish_again(); }, {}, {}, true);
+  publisher_ = {ros::NodeHandle(), clock_topic, 100};
 }
 
-void ClockPublisher::publish(double seconds) {
-  const auto message = boost::make_shared<rosgraph_msgs::Clock>();
-  message->clock = clock_time(seconds);
-  const std::lock_guard<std::mutex> lock(mutex_);
-  last_ = message;
-  if (publisher_) publisher_.publish(last_);  // there is none if the node was told to end while it started
-}
-
-/// To all, whose time stays as it is. roscpp notes what is latched only once it has handed the message to its
-/// own thread: who connects between the two gets it neither way, and in a paused simulation no other follows.
-void ClockPublisher::publish_again() {
-  const std::lock_guard<std::mutex> lock(mutex_);
-  if (last_ && publisher_) publisher_.publish(last_);
+void ClockPublisher::publish(double seconds) const {
+  rosgraph_msgs::Clock message;
+  message.clock = clock_time(seconds);
+  publisher_.publish(message);
 }
 
 }  // namespace desert_sim

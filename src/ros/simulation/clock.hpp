@@ -2,12 +2,10 @@
 /// /clock: the time of the simulation as the ROS time of all nodes. See SimulationState::paced_time(): a step
 /// advances it by run.time_step / run.acceleration, and by run.time_step where the acceleration is 0.
 
-#include <ros/node_handle.h>
-#include <ros/publisher.h>
 #include <ros/time.h>
 #include <rosgraph_msgs/Clock.h>
 
-#include <mutex>
+#include "src/ros/support/latched_publisher.hpp"
 
 namespace desert_sim {
 
@@ -18,17 +16,12 @@ ros::Time clock_time(double seconds);
 class ClockPublisher {
  public:
   /// Throws ConfigError if another node publishes /clock: with two clocks, time would jump back and forth.
-  /// `node`: whose callback queue tells of new subscribers.
-  explicit ClockPublisher(ros::NodeHandle& node);
+  ClockPublisher();
   /// The message is latched, so that a node that starts while the simulation is paused has a time.
-  void publish(double seconds);
+  void publish(double seconds) const;
 
  private:
-  void publish_again();
-
-  std::mutex mutex_;
-  rosgraph_msgs::Clock::ConstPtr last_;
-  ros::Publisher publisher_;  ///< ends first: its callback uses the rest
+  LatchedPublisher<rosgraph_msgs::Clock> publisher_;
 };
 
 }  // namespace desert_sim

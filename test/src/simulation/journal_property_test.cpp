@@ -224,6 +224,21 @@ TEST_P(JournalOf, IsWrittenToARegularFileOnly) {
   EXPECT_EQ(test::file_bytes(folder_.path("victim")), "precious");
 }
 
+TEST_P(JournalOf, HasWayMadeForIt) {
+  make_way_for_journal("");
+  const std::string path = folder_.path("new/folder/j");
+  make_way_for_journal(path);
+  session(path);
+  const std::string first = test::file_bytes(path);
+  EXPECT_FALSE(first.empty());
+  make_way_for_journal(path);
+  EXPECT_FALSE(std::filesystem::exists(path));
+  EXPECT_EQ(test::file_bytes(path + ".previous"), first);
+  folder_.write("file", "precious");
+  EXPECT_THROW(make_way_for_journal(folder_.path("file/j")), ConfigError);
+  EXPECT_EQ(test::file_bytes(folder_.path("file")), "precious");
+}
+
 TEST_P(JournalOf, AnotherScenarioIsRefused) {
   live(folder_.path("j"));
   Session other(test::scenario_of(std::string(journalled_world) + "seed: 2\n"), no_raster_loader, GetParam(),

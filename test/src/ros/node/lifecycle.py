@@ -237,7 +237,7 @@ class Lifecycle(Scenarios):
         return self.run_without_ros(CORNER, "--replay", journal)
 
     def test_journal_replays_to_the_same_hash(self):
-        journal = self.path("journal.yaml")
+        journal = self.path("made/for/it/journal.yaml")
         node = self.start("journalled", {"scenario": CORNER, "journal": journal, "data_dir": self.folder})
         live = self.drive(node)
         self.assertEqual(node.end()[0], 0)
