@@ -18,18 +18,23 @@ export PATH ROS_VERSION=1 ROS_PYTHON_VERSION=3
 # Messages are generated for C++ and Python; nothing here needs those of the other languages.
 export ROS_LANG_DISABLE=${ROS_LANG_DISABLE-geneus:genlisp:gennodejs}
 
-# 1: Debian 12's column of dependencies.txt, 2: that of Ubuntu 20.04, 0: a system we have no names for.
-system_column() {
-  local id
+# The system, such as "debian 12".
+system_release() {
   # shellcheck disable=SC1091
-  id=$(. /etc/os-release 2>/dev/null && echo "${ID:-} ${VERSION_ID:-}")
-  case $id in
-    "debian 12") echo 1 ;;
+  (. /etc/os-release 2>/dev/null && echo "${ID:-} ${VERSION_ID:-}")
+}
+# 1: Debian's column of dependencies.txt, 2: that of Ubuntu 20.04, 0: a system we have no names for.
+system_column() {
+  case $(system_release) in
+    "debian 11" | "debian 12" | "debian 13") echo 1 ;;
     "ubuntu 20.04") echo 2 ;;
     *) echo 0 ;;
   esac
 }
 DESERT_SYSTEM=$(system_column)
+# Whose packages are named: where nothing is installed, those of Debian 12.
+DESERT_RELEASE=$(system_release)
+[[ $DESERT_SYSTEM != 0 ]] || DESERT_RELEASE='debian 12'
 
 source_noetic() {
   [[ -r $ROS_SETUP ]] || return 1
@@ -58,9 +63,15 @@ packages() { # column [window | film | client | core | sanitizers | checks | fla
     '') parts=$all ;;
     *) fail "there is no list of packages '$2'" ;;
   esac
-  awk -F'|' -v column="$1" -v parts="^# ($parts):" '
+  awk -F'|' -v column="$1" -v parts="^# ($parts):" -v release="${DESERT_RELEASE##* }" '
     /^#/ { wanted = $0 ~ parts }
-    wanted { sub(/#.*/, ""); gsub(/[ \t]/, "", $column); if ($column != "" && $column != "-") print $column }
+    !wanted { next }
+    { sub(/#.*/, ""); name = $column; gsub(/^[ \t]+|[ \t]+$/, "", name) }
+    match(name, / \[.*\]$/) { # the releases that have it
+      if (index(" " substr(name, RSTART + 2, RLENGTH - 3) " ", " " release " ") == 0) next
+      name = substr(name, 1, RSTART - 1)
+    }
+    name != "" && name != "-" { print name }
   ' "$DESERT_ROOT/scripts/dependencies.txt"
 }
 
@@ -76,7 +87,7 @@ missing_packages() { # column [list, as of packages()]
 desert_install() { # [list, as of packages()]
   local missing as_root=()
   if [[ $DESERT_SYSTEM == 0 ]]; then
-    say "this is neither Debian 12 nor Ubuntu 20.04: nothing is installed. Needed, by their Debian names:"
+    say "this is neither Debian 11, 12 or 13 nor Ubuntu 20.04: nothing is installed. Needed, by their Debian names:"
     packages 1 "$@" | paste -sd' '
     return
   fi
