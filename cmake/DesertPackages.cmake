@@ -61,10 +61,16 @@ find_package(ompl QUIET)
 find_library(DESERT_ompl_LIBRARY ompl HINTS ${OMPL_LIBRARY_DIRS})
 mark_as_advanced(DESERT_ompl_LIBRARY)
 if(ompl_FOUND AND DESERT_ompl_LIBRARY)
-  list(REMOVE_ITEM OMPL_INCLUDE_DIRS /usr/include)
+  # Debian 13 names folders of MPI that are not there, which CMake refuses.
+  set(include_folders "")
+  foreach(folder IN LISTS OMPL_INCLUDE_DIRS)
+    if(IS_DIRECTORY "${folder}" AND NOT folder STREQUAL "/usr/include")
+      list(APPEND include_folders "${folder}")
+    endif()
+  endforeach()
   add_library(desert::ompl INTERFACE IMPORTED GLOBAL)
   set_target_properties(desert::ompl PROPERTIES
-    INTERFACE_INCLUDE_DIRECTORIES "${OMPL_INCLUDE_DIRS}"
+    INTERFACE_INCLUDE_DIRECTORIES "${include_folders}"
     INTERFACE_LINK_LIBRARIES ${DESERT_ompl_LIBRARY})
 elseif(DESERT_WITH_ROS)
   message(FATAL_ERROR "desert_sim needs OMPL: install libompl-dev (the whole list is in scripts/dependencies.txt)")

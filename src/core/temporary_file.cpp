@@ -69,7 +69,7 @@ TemporaryFile::~TemporaryFile() {
 /// Opening this link of the kernel opens the file itself, whatever has got its name in the meantime.
 std::string TemporaryFile::library_path() const { return "/proc/self/fd/" + std::to_string(file_.number()); }
 
-void TemporaryFile::write(const std::string& bytes) {
+void TemporaryFile::write(std::string_view bytes) {
   for (std::size_t done = 0; done < bytes.size();) {
     const ssize_t n = ::write(file_.number(), bytes.data() + done, bytes.size() - done);
     if (n < 0 && errno == EINTR) continue;

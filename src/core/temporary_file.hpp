@@ -2,6 +2,7 @@
 /// Files that appear under their name when they are complete, and folders that one writer uses at a time.
 
 #include <string>
+#include <string_view>
 
 #include "src/core/descriptor.hpp"
 
@@ -23,7 +24,7 @@ class TemporaryFile {
   /// A path under which a library can open the file until it is published.
   std::string library_path() const;
   /// Appends bytes.
-  void write(const std::string& bytes);
+  void write(std::string_view bytes);
   /// Synchronises the file to the disk and renames it to `path`, which may replace a regular file.
   void publish();
 

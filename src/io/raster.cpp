@@ -4,9 +4,11 @@
 #include <ogr_spatialref.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
+#include <string_view>
 
 #include "src/core/temporary_file.hpp"
 #include "src/io/gdal_messages.hpp"
@@ -39,8 +41,34 @@ void check_writable(const std::string& path, const Raster& raster) {
                           raster.origin_x, ", ", raster.origin_y, "; must be finite, cell_size > 0"));
 }
 
-/// Writes a GeoTIFF directly to `path`; false if GDAL reported a failure, which can also happen on closing
-/// the file, for instance on a full disk.
+/// A file of GDAL's in memory, which goes with this object. Not every version of GDAL reports that a disk is
+/// full (3.10 does not), so what it makes comes to the disk by our own means.
+class MemoryFile {
+ public:
+  MemoryFile() : folder_("/vsimem/desert_sim_" + std::to_string(next_number())) {}
+  ~MemoryFile() { VSIRmdirRecursive(folder_.c_str()); }
+  MemoryFile(const MemoryFile&) = delete;
+  MemoryFile& operator=(const MemoryFile&) = delete;
+
+  std::string path() const { return folder_ + "/raster.tif"; }
+  /// Empty if there is no such file, or if GDAL has put what does not fit into it into another one.
+  std::string_view bytes() const {
+    const CPLStringList names(VSIReadDir(folder_.c_str()));
+    if (names.size() != 1) return {};
+    vsi_l_offset size = 0;
+    const GByte* const found = VSIGetMemFileBuffer(path().c_str(), &size, FALSE);
+    return {reinterpret_cast<const char*>(found), found ? static_cast<std::size_t>(size) : 0};
+  }
+
+ private:
+  static std::uint64_t next_number() {
+    static std::atomic<std::uint64_t> number{0};
+    return ++number;
+  }
+  const std::string folder_;
+};
+
+/// Writes a GeoTIFF to `path`; false if GDAL reported a failure, which can also happen on closing the file.
 bool write_dataset(const std::string& path, const Raster& raster, bool declare_no_data,
                    GdalMessages& messages) {
   const char* settings[] = {"COMPRESS=DEFLATE", "PREDICTOR=3", "ZLEVEL=1", "BIGTIFF=IF_SAFER", nullptr};
@@ -109,8 +137,10 @@ void write_geotiff(const std::string& path, const Raster& raster, bool declare_n
   check_writable(path, raster);
   TemporaryFile file(path);
   GdalMessages messages;
-  if (!write_dataset(file.library_path(), raster, declare_no_data, messages))
+  const MemoryFile written;
+  if (!write_dataset(written.path(), raster, declare_no_data, messages) || written.bytes().empty())
     throw WriteError(concatenate("raster '", path, "': cannot be written: ", messages.text()));
+  file.write(written.bytes());
   file.publish();
   std::error_code error;
   std::filesystem::remove(path + ".aux.xml", error);  // GDAL's metadata of the replaced file

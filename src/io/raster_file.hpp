@@ -1,6 +1,7 @@
 #pragma once
 /// Rasters that are open: first what their headers say, then the cells of a window.
 
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>

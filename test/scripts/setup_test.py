@@ -16,8 +16,8 @@ def shell(command):
                           stderr=subprocess.STDOUT, universal_newlines=True)
 
 
-def packages(name="", column=1):
-    run = shell("packages %d %s" % (column, name))
+def packages(name="", column=1, release=12):
+    run = shell("DESERT_RELEASE='debian %d'; packages %d %s" % (release, column, name))
     if run.returncode != 0:
         raise AssertionError(run.stdout)
     found = run.stdout.split()
@@ -26,8 +26,8 @@ def packages(name="", column=1):
     return set(found)
 
 
-def parts():
-    """{part: {packages for Debian 12}}"""
+def parts(release=12):
+    """{part: {packages for a release of Debian}}"""
     found = {}
     with open(LIST, encoding="utf-8") as file:
         for line in file:
@@ -35,7 +35,9 @@ def parts():
             if heading and not heading[1].startswith("Columns"):
                 part = found.setdefault(heading[1], set())
             elif not line.startswith("#"):
-                part.add(line.split("|")[0].strip())
+                name, *releases = line.split("|")[0].replace("[", " ").replace("]", " ").split()
+                if not releases or str(release) in releases:
+                    part.add(name)
     return {name: names - {"-"} for name, names in found.items()}
 
 
@@ -65,6 +67,21 @@ class Packages(unittest.TestCase):
         everything = set().union(*(names for part, names in parts().items() if part not in NOT_OF_TESTS))
         self.assertEqual(packages(), everything)
         self.assertEqual(packages("sanitizers"), everything | parts()["Sanitizers"])
+
+    def test_releases_have_what_they_need(self):
+        for release, has in ((11, {"qtbase5-dev", "libopengl-dev"}), (12, {"qtbase5-dev"}), (13, {"qt6-base-dev"})):
+            window = packages("window", release=release)
+            self.assertEqual(window & {"qtbase5-dev", "libopengl-dev", "qt6-base-dev"}, has)
+            self.assertLessEqual(parts(release)["window"], window)
+        self.assertEqual({name for release in (11, 12, 13) for name in packages(release=release) if "[" in name}, set())
+
+    def test_the_packages_of_another_system_are_those_of_debian_12(self):
+        here = shell("echo $DESERT_SYSTEM $DESERT_RELEASE").stdout.split()
+        with open("/etc/os-release", encoding="utf-8") as file:
+            found = dict(line.rstrip().replace('"', "").split("=", 1) for line in file if "=" in line)
+        known = {"debian 11": "1", "debian 12": "1", "debian 13": "1", "ubuntu 20.04": "2"}
+        name = found.get("ID", "") + " " + found.get("VERSION_ID", "")
+        self.assertEqual(here, [known[name], *name.split()] if name in known else ["0", "debian", "12"])
 
     def test_without_ros_nothing_of_ros_is_installed(self):
         self.assertEqual([name for name in packages("core", 2) if name.startswith("ros-")], [])
