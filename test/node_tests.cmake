@@ -31,8 +31,12 @@ function(desert_node_test launch)
   add_rostest(${patient} ${ARGN})
   get_property(added DIRECTORY PROPERTY TESTS)
   list(REMOVE_ITEM added ${before})
-  # rostest takes a test in Python that was killed, whose file of results is empty, for one without failures.
-  set_tests_properties(${added} PROPERTIES FAIL_REGULAR_EXPRESSION "test result file is empty;TESTS: 0")
+  # rostest takes a test in Python that was killed, whose file of results is empty, for one without failures. A test
+  # whose process does not heed its time limit is ended by ctest.
+  file(STRINGS ${launch} limit REGEX "time-limit=\"[0-9]+\"" LIMIT_COUNT 1)
+  string(REGEX REPLACE ".*time-limit=\"([0-9]+)\".*" "\\1" limit "${limit}")
+  math(EXPR longest "(${limit} + 300) * ${DESERT_PATIENCE}")
+  set_tests_properties(${added} PROPERTIES FAIL_REGULAR_EXPRESSION "test result file is empty;TESTS: 0" TIMEOUT ${longest})
   if(launch MATCHES "_timing\\.test$")
     set_tests_properties(${added} PROPERTIES LABELS timing RUN_SERIAL ON)
   else()
