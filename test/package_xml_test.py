@@ -25,7 +25,8 @@ OF_OPENCV = {"libopencv-core-dev", "libopencv-imgproc-dev", "libopencv-imgcodecs
 OF_EVERY_WORKSPACE = {"g++", "make", "ninja-build", "cmake", "pkg-config"}
 OF_TESTS = {"python3-netcdf4", "python3-xarray", "snakemake", "munge", "slurmctld", "slurmd", "slurm-client", "xvfb",
             "libgl1-mesa-dri", "shellcheck", "flake8", "catkin-lint", "python3-catkin-pkg", "clang", "llvm", "libomp-dev",
-            "stress-ng", "qtbase5-dev", "ros-noetic-grid-map-visualization", "ros-noetic-grid-map-filters"}
+            "stress-ng", "qtbase5-dev", "qt6-base-dev", "libopengl-dev", "libgmock-dev",
+            "ros-noetic-grid-map-visualization", "ros-noetic-grid-map-filters"}
 
 
 def keys():
@@ -76,7 +77,7 @@ def dependencies(column):
     """Packages of scripts/dependencies.txt: column 0 of Debian, 1 of Ubuntu."""
     with open(os.path.join(ROOT, "scripts", "dependencies.txt"), encoding="utf-8") as file:
         rows = [line.split("|") for line in file if line.strip() and not line.startswith("#")]
-    return {row[column].strip() for row in rows} - {"-"}
+    return {row[column].split("[")[0].strip() for row in rows} - {"-"}
 
 
 class PackageXml(unittest.TestCase):

@@ -1,10 +1,11 @@
 #include "src/rviz/drive_pad.hpp"
 
 #include <QKeyEvent>
-#include <QMouseEvent>
 #include <QPainter>
 #include <algorithm>
 #include <cmath>
+
+#include "src/rviz/mouse_position.hpp"
 
 namespace desert_sim {
 
@@ -64,11 +65,11 @@ void DrivePad::drag_to(const QPointF& point) {
 void DrivePad::mousePressEvent(QMouseEvent* event) {
   if (event->button() != Qt::LeftButton) return;
   dragging_ = true;
-  drag_to(event->localPos());
+  drag_to(position_of(*event));
 }
 
 void DrivePad::mouseMoveEvent(QMouseEvent* event) {
-  if (dragging_) drag_to(event->localPos());
+  if (dragging_) drag_to(position_of(*event));
 }
 
 void DrivePad::mouseReleaseEvent(QMouseEvent* event) {

@@ -1,11 +1,11 @@
 #include "src/rviz/wind_dial.hpp"
 
-#include <QMouseEvent>
 #include <QPainter>
 #include <algorithm>
 #include <cmath>
 
 #include "src/core/constants.hpp"
+#include "src/rviz/mouse_position.hpp"
 
 namespace desert_sim {
 
@@ -84,16 +84,16 @@ void WindDial::drag_to(const QPointF& point) {
 void WindDial::mousePressEvent(QMouseEvent* event) {
   if (event->button() != Qt::LeftButton) return;
   dragging_ = true;
-  drag_to(event->localPos());
+  drag_to(position_of(*event));
 }
 
 void WindDial::mouseMoveEvent(QMouseEvent* event) {
-  if (dragging_) drag_to(event->localPos());
+  if (dragging_) drag_to(position_of(*event));
 }
 
 void WindDial::mouseReleaseEvent(QMouseEvent* event) {
   if (!dragging_ || event->button() != Qt::LeftButton) return;
-  drag_to(event->localPos());
+  drag_to(position_of(*event));
   dragging_ = false;
   fit_scale();
   Q_EMIT released();
