@@ -2,24 +2,16 @@
 """docker/ and conda/: that they install what scripts/dependencies.txt lists, and start what there is. (No image is built.)"""
 import os
 import re
-import subprocess
 import unittest
 from xml.etree import ElementTree
 
+from setup_test import packages, ROOT
 import yaml
-
-ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 
 
 def text_of(*path):
     with open(os.path.join(ROOT, *path), encoding="utf-8") as file:
         return file.read()
-
-
-def packages(column, name):
-    run = subprocess.run(["bash", "-c", ". %s/scripts/_setup.sh; packages %d %s" % (ROOT, column, name)], check=True,
-                         stdout=subprocess.PIPE, universal_newlines=True)
-    return set(run.stdout.split())
 
 
 class Images(unittest.TestCase):
@@ -90,7 +82,7 @@ class Recipe(unittest.TestCase):
             entry = re.match(r"    - (.+?)\s*(?:# (.*))?$", line)
             if entry and entry[1] != "python":
                 named |= set((entry[2] or entry[1]).split())
-        self.assertEqual(named, packages(2, "film") | {"libcli11-dev"})  # which Ubuntu 20.04 lacks
+        self.assertEqual(named, packages("film", column=2) | {"libcli11-dev"})  # which Ubuntu 20.04 lacks
 
     def test_what_is_linked_is_there_when_it_runs(self):
         parts = re.split(r"\n  (build|host|run):\n", text_of("conda", "meta.yaml").split("\ntest:")[0])

@@ -69,8 +69,7 @@ constexpr auto parameter_table(const NodeParameters*) {
           "Checkpoints lie below this folder; empty: desert_sim in ROS's own folder ($ROS_HOME, or ~/.ros)."),
       parameter("journal", &P::journal,
                 "File for the journal of commands, whose folder is made where it is missing; a file of that "
-                "name gets "
-                "the ending .previous. Empty: none."),
+                "name gets the ending .previous. Empty: none."),
       parameter("autosave_period", &P::autosave_period, 0, 1e9, "s",
                 "Of wall time, from one checkpoint in ~data_dir/autosave to the next; 0: none."),
       parameter("resume", &P::resume, "Whether it starts with its newest autosave that is whole."),
