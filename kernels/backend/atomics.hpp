@@ -1,6 +1,8 @@
 #pragma once
 /// Atomic operations on memory that several cells write to at once, on the CPU and on the GPU.
 
+#include <omp.h>
+
 #include "kernels/base/macros.hpp"
 #include "kernels/base/quanta.hpp"
 
@@ -19,6 +21,35 @@ DESERT_HD Integer atomic_add(Integer* to, Integer amount) {
   }
 #else
   return __atomic_fetch_add(to, amount, __ATOMIC_RELAXED);
+#endif
+}
+
+/// A sum that is spread over `count` words, a power of two, because additions of many threads to the same
+/// word wait for each other. Each thread of a CPU has a word of its own, in a line of the cache of its own as
+/// long as there are `count`/8 threads or fewer; the threads of a warp on a GPU add up their amounts, and one
+/// of them adds these. `number` tells such sums apart.
+DESERT_HD void add_to_spread_sum(long long* words, int count, int number, int cell, Quanta amount) {
+#if defined(__CUDA_ARCH__)
+  const int place = (cell / 32) & (count - 1);
+#if __CUDA_ARCH__ >= 800
+  const unsigned active = __activemask();
+  int same = 0;
+  __match_all_sync(active, number, &same);
+  if (same != 0) {
+    // In two halves, whose sums fit into a word each.
+    const int low = __reduce_add_sync(active, amount & 0xffff),
+              high = __reduce_add_sync(active, amount >> 16);
+    if (static_cast<int>(threadIdx.x % 32) == __ffs(static_cast<int>(active)) - 1)
+      atomic_add(&words[place], static_cast<long long>(high) * 65536 + low);
+    return;
+  }
+#endif
+  atomic_add(&words[place], static_cast<long long>(amount));
+#else
+  (void)number, (void)cell;
+  constexpr int words_of_a_cache_line = 8;
+  const int thread = omp_get_thread_num() * words_of_a_cache_line;
+  atomic_add(&words[(thread + thread / count) & (count - 1)], static_cast<long long>(amount));
 #endif
 }
 

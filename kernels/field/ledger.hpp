@@ -34,7 +34,7 @@ struct LedgerView {
   DESERT_HD void book(Material m, int side, int cell, Quanta amount) const {
     if (amount == 0) return;
     const int account = static_cast<int>(m) * 2 + side;
-    atomic_add(&words_on_device[account * stripes + (cell & (stripes - 1))], static_cast<long long>(amount));
+    add_to_spread_sum(words_on_device + account * stripes, stripes, account, cell, amount);
   }
 };
 
