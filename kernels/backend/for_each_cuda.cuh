@@ -11,6 +11,14 @@
 #include "kernels/base/quanta.hpp"
 #include "src/core/error.hpp"
 
+/// Before a kernel's parameter that no thread changes: what is found in it by an index, or through a pointer,
+/// is read where it is. Without it each thread makes a copy of its own. Older ones do not know it.
+#if CUDART_VERSION >= 12000 && (!defined(__CUDA_ARCH__) || __CUDA_ARCH__ >= 700)
+#define DESERT_GRID_CONSTANT __grid_constant__
+#else
+#define DESERT_GRID_CONSTANT
+#endif
+
 namespace desert_sim {
 
 inline void check_cuda(cudaError_t status, const char* what) {
@@ -40,7 +48,7 @@ template <class Law>
 constexpr int warps_per_block = CompactWarps<Law>::value ? 2 : block_y;
 
 template <class Law>
-__global__ void cells_kernel(Grid grid, Law law) {
+__global__ void cells_kernel(Grid grid, DESERT_GRID_CONSTANT const Law law) {
   int x = blockIdx.x * block_x + threadIdx.x, y = blockIdx.y * block_y + threadIdx.y;
   if constexpr (CompactWarps<Law>::value) {
     x = 8 * (blockIdx.x * warps_per_block<Law> + threadIdx.y) + threadIdx.x % 8;
@@ -178,13 +186,18 @@ __global__ void tiles_kernel(Law law) {
 }
 
 template <class Law>
-__global__ void items_kernel(int count, Law law) {
+__global__ void items_kernel(int count, DESERT_GRID_CONSTANT const Law law) {
   const int n = blockIdx.x * blockDim.x + threadIdx.x;
   if (n < count) law(n);
 }
 
+/// Places of its own that a block has where a line has several, and lines that it then passes at once. More
+/// places keep a multiprocessor longer for each line, and fewer lines take more launches: 64 and 32 were the
+/// fastest from 512 to 4096 places (doc/notebook/kernel_experiments.md).
+constexpr int places_of_a_line_block = 64, lines_at_once = 32;
 /// Threads of a block that passes over lines.
-constexpr int longest_line_block = 512;
+template <class Law>
+constexpr int longest_line_block = places_of_a_line_block + lines_at_once * 2 * Law::reach;
 
 /// Where a block of threads passes over lines: its own places and, where a line has several blocks, `margin`
 /// more at either side, so that it knows without the other blocks what reaches its own.
@@ -248,7 +261,7 @@ struct LinePassed {
 /// on. `ring`: the block passes the whole of lines that are rings. Threads that have no place of their own
 /// repeat one, and store nothing.
 template <class Law, bool ring>
-__global__ void __launch_bounds__(longest_line_block)
+__global__ void __launch_bounds__(longest_line_block<Law>)
     lines_kernel(LineBlock block, bool begins, LineWords<typename Law::Word> from,
                  LineWords<typename Law::Word> to, Law law) {
   using Word = typename Law::Word;
@@ -358,12 +371,11 @@ template <class Law>
 void for_each_line_in_turn(CudaExec& exec, int first, int end, int length, typename Law::Word* words,
                            const Law& law) {
   using Words = LineWords<typename Law::Word>;
-  constexpr int lines_at_once = 32, margin = Law::reach * lines_at_once;
-  const bool whole = length <= cuda::longest_line_block;
+  const bool whole = length <= cuda::longest_line_block<Law>;
   cuda::LineBlock block{first, end, length, length, 0, law.around()};
   if (!whole) {
-    block.margin = margin;
-    block.own = cuda::longest_line_block - 2 * margin;
+    block.margin = Law::reach * cuda::lines_at_once;
+    block.own = cuda::places_of_a_line_block;
   }
   const int blocks = (length + block.own - 1) / block.own;
   const int threads = (block.own + 2 * block.margin + 31) / 32 * 32;
@@ -373,7 +385,7 @@ void for_each_line_in_turn(CudaExec& exec, int first, int end, int length, typen
   const auto kernel = whole && block.around ? cuda::lines_kernel<Law, true> : cuda::lines_kernel<Law, false>;
   for (int line = first; line < end; line = block.end) {
     block.first = line;
-    block.end = whole ? end : std::min(line + lines_at_once, end);
+    block.end = whole ? end : std::min(line + cuda::lines_at_once, end);
     kernel<<<blocks, threads, bytes, cuda::stream(exec)>>>(block, line == first, from, to, law);
     check_cuda(cudaGetLastError(), "launch over lines");
     std::swap(from, to);

@@ -10,9 +10,10 @@
 namespace desert_sim::plants {
 
 struct Cover {
+  static constexpr bool compact_warps = true;  // cells near each other see the same plants
   Grid grid;
   Neighbourhood near;
-  View plants;
+  const std::int32_t* kinds;  ///< the species of each plant
   const SpeciesTraits* species;
   int species_count;
   const float *heights, *wind_x, *wind_y;  ///< heights [quanta]
@@ -28,13 +29,13 @@ struct Cover {
     float of_species[max_species], downwind[max_species];
   };
 
-  DESERT_HD void add(Sums& sums, int n, float x, float y, float height, float u, float v) const {
-    const float dx = near.lookup.difference_x(x, plants.x[n]), dy = near.lookup.difference_y(y, plants.y[n]);
-    const float distance2 = dx * dx + dy * dy, radius = plants.radius[n];
-    if (!(distance2 < radius * radius)) return;
-    const int kind = plants.species[n];
+  DESERT_HD void add(Sums& sums, int n, const Neighbour& plant, float x, float y, float height, float u,
+                     float v) const {
+    const float dx = near.lookup.difference_x(x, plant.x), dy = near.lookup.difference_y(y, plant.y);
+    const float distance2 = dx * dx + dy * dy, radius = plant.radius;
+    const int kind = kinds[n];
     const SpeciesTraits& s = species[kind];
-    const float above = (height - static_cast<float>(plants.z[n])) * quantum;
+    const float above = (height - static_cast<float>(plant.z)) * quantum;
     const float d = density_at(distance2, above, radius, s.stem, s.root);
     sums.density += d;
     sums.canopy = maximum(sums.canopy, radius * s.stem * d);
@@ -55,7 +56,8 @@ struct Cover {
     const float height = heights[i];
     Sums sums;
     for (int k = 0; k < species_count; ++k) sums.of_species[k] = sums.downwind[k] = 0.0f;
-    near.visit_near(x, y, 0.0f, [&](int n) { add(sums, n, x, y, height, u, v); });
+    near.visit_near(x, y, 0.0f,
+                    [&](int n, const Neighbour& plant) { add(sums, n, plant, x, y, height, u, v); });
     canopy_height[i] = sums.canopy;
     for (int k = 0; k < species_count; ++k) {
       density[k * static_cast<long long>(grid.cells()) + i] = sums.of_species[k];
@@ -97,9 +99,9 @@ void cover(E& exec, const TerrainView& t, const VegetationParameters& p, const C
   const float* const heights = in.heights.cell_heights.data();
   for_each_cell(
       exec, t.grid,
-      Cover{t.grid, work.neighbourhood(), work.plants(), work.species.data(), work.species_count, heights,
-            t.real(Layer::wind_x), t.real(Layer::wind_y), t.quantum, t.quanta_per_metre, in.time_step,
-            dice[Roll::humus], to_quanta_at_most(p.humus_limit, t.quanta_per_metre, load_limit),
+      Cover{t.grid, work.neighbourhood(), work.plants().species, work.species.data(), work.species_count,
+            heights, t.real(Layer::wind_x), t.real(Layer::wind_y), t.quantum, t.quanta_per_metre,
+            in.time_step, dice[Roll::humus], to_quanta_at_most(p.humus_limit, t.quanta_per_metre, load_limit),
             in.makes_state ? t.real(Layer::vegetation) : nullptr, t.real(Layer::canopy_height),
             t.quanta(Layer::humus), work.density.data(), work.downwind.data()});
   for_each_cell(

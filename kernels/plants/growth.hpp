@@ -62,14 +62,11 @@ struct Competition {
     const Quanta z = plants.z[k];
     const float* row = matrix + plants.species[k] * species_count;
     float sum = 0.0f;
-    near.visit_near(x, y, r, [&](int j) {
+    near.visit_near(x, y, r, [&](int j, const Neighbour& other) {
       if (j == k) return;
-      const float dx = near.lookup.difference_x(x, plants.x[j]),
-                  dy = near.lookup.difference_y(y, plants.y[j]);
-      const float both = r + plants.radius[j], flat2 = dx * dx + dy * dy;
-      if (!(flat2 < both * both)) return;
-      const float dz = static_cast<float>(z - plants.z[j]) * quantum;
-      const float overlap = minimum(sqrtf(flat2 + dz * dz) - both, 0.0f) / r;
+      const float dx = near.lookup.difference_x(x, other.x), dy = near.lookup.difference_y(y, other.y);
+      const float dz = static_cast<float>(z - other.z) * quantum, flat2 = dx * dx + dy * dy;
+      const float overlap = minimum(sqrtf(flat2 + dz * dz) - (r + other.radius), 0.0f) / r;
       sum += 0.25f * row[plants.species[j]] * (overlap * overlap);
     });
     return clamp(1.0f - sum, 0.0f, 1.0f);

@@ -52,8 +52,8 @@ struct Illuminate {
       const int at = inside ? i + rays.dy[n] * grid.width + rays.dx[n]
                             : sample_index(grid, x + rays.dx[n], y + rays.dy[n]);
       const float top = tops[at];
-      on_ground += exp_negative(rays.weight[n] * maximum(top - low, 0.0f));
-      on_canopy += exp_negative(rays.weight[n] * maximum(top - high, 0.0f));
+      on_ground += exp_negative(rays.weight[n] * fast_max(top - low, 0.0f));
+      on_canopy += exp_negative(rays.weight[n] * fast_max(top - high, 0.0f));
     });
     constexpr float others = Rays::samples - Rays::count;
     const float depth = static_cast<float>(value_or_zero(water, i)) * quantum;

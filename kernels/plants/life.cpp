@@ -22,9 +22,9 @@ void spawn(E& exec, const Site& site, const StepInputs& in, Workspace& work) {
                              in.tick};
   for_each_cell(exec, site.grid, MarkSpawningCells{spawning, work.seeds.data()});
   prefix_sums(exec, work.sort_workspace, work.seeds.data(), work.seed_offsets.data(), site.grid.cells() + 1);
-  for_each_cell(exec, site.grid,
-                CreatePlants{spawning, work.seeds.data(), work.seed_offsets.data(), work.next_state(),
-                             work.count, work.capacity});
+  const int room = work.capacity - work.count;
+  for_each_item(exec, room,
+                CreatePlants{spawning, work.seed_offsets.data(), work.next_state(), work.count, room});
   exec.copy(work.event_counts.data() + 1, work.seed_offsets.data() + site.grid.cells(), sizeof(int));
 }
 
@@ -45,7 +45,7 @@ void grow_and_spawn(E& exec, const TerrainView& t, const StepInputs& in, const D
                      t.real(Layer::illumination_canopy), in.time_step, in.vegetation.litter,
                      in.vegetation.overgrown, dice[Roll::plant_height], work.granted_water.data(),
                      t.quanta(Layer::humus), work.event_counts.data()});
-  spawn(exec, water_uptake.site, in, work);
+  if (work.count < work.capacity) spawn(exec, water_uptake.site, in, work);
   if (t.quanta(Layer::moisture))
     for_each_item(exec, work.count,
                   DebitMoisture{water_uptake.site, work.plants(), work.granted_water.data(),

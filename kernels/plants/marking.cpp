@@ -26,12 +26,11 @@ struct DominantSpecies {
     const Quanta z = height(i);
     float densest = bare_density;
     int found = 0;
-    near.visit_near(x, y, 0.0f, [&](int n) {
-      const float dx = near.lookup.difference_x(x, plants.x[n]),
-                  dy = near.lookup.difference_y(y, plants.y[n]);
+    near.visit_near(x, y, 0.0f, [&](int n, const Neighbour& plant) {
+      const float dx = near.lookup.difference_x(x, plant.x), dy = near.lookup.difference_y(y, plant.y);
       const SpeciesTraits& s = species[plants.species[n]];
-      const float above = static_cast<float>(z - plants.z[n]) * quantum;
-      const float d = density_at(dx * dx + dy * dy, above, plants.radius[n], s.stem, s.root);
+      const float above = static_cast<float>(z - plant.z) * quantum;
+      const float d = density_at(dx * dx + dy * dy, above, plant.radius, s.stem, s.root);
       if (!(d > densest)) return;
       densest = d;
       found = 1 + plants.species[n];

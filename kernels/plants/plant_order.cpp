@@ -2,6 +2,7 @@
 #include "kernels/plants/plant_order.hpp"
 
 #include "kernels/backend/loops.hpp"
+#include "kernels/base/partition_point.hpp"
 
 namespace desert_sim::plants {
 
@@ -20,23 +21,21 @@ struct Key {
 struct Gather {
   const std::uint64_t* words;
   View from, to;
-  DESERT_HD void operator()(int n) const { to.copy_from(n, from, static_cast<int>(words[n] & 0xffffffffu)); }
+  Neighbour* neighbours;
+  DESERT_HD void operator()(int i) const {
+    const int n = static_cast<int>(words[i] & 0xffffffffu);
+    to.copy_from(i, from, n);
+    neighbours[i] = {from.x[n], from.y[n], from.radius[n], from.z[n]};
+  }
 };
 
-/// Finds the spans of sorted plants of each cell of the look-up, and of each of its levels.
-struct MarkSpans {
-  Lookup lookup;
+/// Finds the first of the sorted plants that belong to a cell of the look-up or to a later one.
+struct FindBegins {
   const std::uint64_t* words;
   int count;
-  Span* spans;
-  DESERT_HD int key(int n) const { return static_cast<int>(words[n] >> 32); }
-  DESERT_HD int level(int n) const { return lookup.cells + lookup.level_of_cell(key(n)); }
-  DESERT_HD void operator()(int n) const {
-    const bool first = n == 0, last = n == count - 1;
-    if (first || key(n - 1) != key(n)) spans[key(n)].begin = n;
-    if (last || key(n + 1) != key(n)) spans[key(n)].end = n + 1;
-    if (first || level(n - 1) != level(n)) spans[level(n)].begin = n;
-    if (last || level(n + 1) != level(n)) spans[level(n)].end = n + 1;
+  std::int32_t* begins;
+  DESERT_HD void operator()(int cell) const {
+    begins[cell] = partition_point(count, [&](int n) { return static_cast<int>(words[n] >> 32) < cell; });
   }
 };
 
@@ -46,9 +45,8 @@ void sort_plants(E& exec, int all, int dead, Workspace& work) {
   sort_by_key(exec, work.sort_workspace, all, bit_width_of(static_cast<std::uint32_t>(work.lookup.cells)));
   work.count = all - dead;
   const std::uint64_t* words = work.sort_workspace.sort_keys.data();
-  for_each_item(exec, work.count, Gather{words, work.next_state(), work.plants()});
-  work.spans.set_zero();
-  for_each_item(exec, work.count, MarkSpans{work.lookup, words, work.count, work.spans.data()});
+  for_each_item(exec, work.count, Gather{words, work.next_state(), work.plants(), work.neighbours.data()});
+  for_each_item(exec, work.lookup.cells + 1, FindBegins{words, work.count, work.begins.data()});
 }
 
 template void sort_plants(Backend&, int, int, Workspace&);

@@ -17,6 +17,7 @@
 ///
 /// Reads bedrock, soil, sand, water, moisture, obstacle and the densities; writes the plants.
 
+#include "kernels/base/partition_point.hpp"
 #include "kernels/field/random.hpp"
 #include "kernels/plants/site.hpp"
 #include "kernels/plants/workspace.hpp"
@@ -50,19 +51,32 @@ struct SpawningLaw {
     return weight_of(species[kind], density[at], downwind[at]);
   }
 
-  DESERT_HD bool is_suitable(int kind, int i, float slope) const {
+  /// What decides about all species alike whether they come up in a cell.
+  struct Place {
+    float slope, loose_depth, water_depth, moisture;
+    bool has_obstacle;
+    Quanta surface;
+  };
+  DESERT_HD Place place(int i) const {
+    return {site.slope(i),
+            site.loose_depth(i),
+            site.water_depth(i),
+            site.relative_moisture(i),
+            value_or_zero(site.obstacle, i) > 0.0f,
+            site.surface(i)};
+  }
+  DESERT_HD bool is_suitable(int kind, int i, const Place& here) const {
     const SpeciesTraits& s = species[kind];
-    const float radius = seedling_radius(s, site.loose_depth(i), seedling_share), depth = site.water_depth(i);
-    if (!(radius > 0.0f) || value_or_zero(site.obstacle, i) > 0.0f || slope > s.slope) return false;
+    const float radius = seedling_radius(s, here.loose_depth, seedling_share), depth = here.water_depth;
+    if (!(radius > 0.0f) || here.has_obstacle || here.slope > s.slope) return false;
     if (density[kind * static_cast<long long>(site.grid.cells()) + i] > s.separation) return false;
     const float stem = radius * s.stem;
     if (lives_under_water(s) ? depth < stem || depth <= wet_depth
                              : depth > maximum(s.water_resistance * stem, wet_depth))
       return false;
-    const float moisture = site.relative_moisture(i);
-    if (moisture < s.moisture_lowest || moisture > s.moisture_highest) return false;
+    if (here.moisture < s.moisture_lowest || here.moisture > s.moisture_highest) return false;
     const float in_quanta = radius * site.quanta_per_metre;
-    return ground_quality(s, site.ground(i, site.surface(i), in_quanta * s.stem, in_quanta * s.root)) > 0.0f;
+    return ground_quality(s, site.ground(i, here.surface, in_quanta * s.stem, in_quanta * s.root)) > 0.0f;
   }
 
   /// Random words of a cell in this step; `which` is 2n for the species of its nth plant and, of the first,
@@ -91,9 +105,9 @@ struct SpawningLaw {
     const double u = (words.word[0] + words.word[1] * 0x1p-32) * 0x1p-32;
     // Most cells return here: none comes up even if the place suits all species.
     if (number_of_events(share(likely), time_step, 1.0 - u) == 0) return found;
-    const float slope = site.slope(i);
+    const Place here = place(i);
     for (int k = 0; k < species_count; ++k)
-      found.all += found.weights[k] = is_suitable(k, i, slope) ? weight(k, i) : 0.0f;
+      found.all += found.weights[k] = is_suitable(k, i, here) ? weight(k, i) : 0.0f;
     found.count = number_of_events(share(found.all), time_step, 1.0 - u);
     return found;
   }
@@ -121,31 +135,27 @@ struct MarkSpawningCells {
   }
 };
 
-/// Index of the j-th of `all` seeds among the new plants, of which there are at most `room`; −1 if it is
-/// dropped.
-DESERT_HD int index_of_new_plant(long long j, long long all, long long room) {
-  if (all <= room) return static_cast<int>(j);
-  const long long place = j * room / all;
-  return (j + 1) * room / all > place ? static_cast<int>(place) : -1;
+/// Which of `all` seeds the nth new plant comes from, if there is room for `room` of them;
+/// n < min(all, room).
+DESERT_HD int seed_of(long long n, long long all, long long room) {
+  return static_cast<int>(all <= room ? n : ((n + 1) * all + room - 1) / room - 1);
 }
 
-/// Creates the new plants.
+/// Creates the nth new plant, if there are so many.
 struct CreatePlants {
   SpawningLaw spawning;
-  const int *seeds, *seed_offsets;
+  const int* seed_offsets;  ///< number of seeds in the cells before each, and in all
   View next_state;
-  int count, capacity;
+  int count, room;
 
-  DESERT_HD void operator()(int x, int y) const {
-    const Site& site = spawning.site;
-    const int i = site.grid.index(x, y);
-    if (seeds[i] == 0) return;
-    const SpawningLaw::Seeds among = spawning.seeds(i);
-    for (int k = 0; k < seeds[i]; ++k) {
-      const int place =
-          index_of_new_plant(seed_offsets[i] + k, seed_offsets[site.grid.cells()], capacity - count);
-      if (place >= 0) create(x, y, i, k, spawning.species_of(i, among, k), count + place);
-    }
+  DESERT_HD void operator()(int n) const {
+    const Grid& grid = spawning.site.grid;
+    const int all = seed_offsets[grid.cells()];
+    if (n >= all) return;
+    const int seed = seed_of(n, all, room);
+    const int i = partition_point(grid.cells(), [&](int cell) { return seed_offsets[cell] <= seed; }) - 1;
+    const int k = seed - seed_offsets[i];
+    create(i % grid.width, i / grid.width, i, k, spawning.species_of(i, spawning.seeds(i), k), count + n);
   }
   /// The kth plant of cell i, as the nth of all.
   DESERT_HD void create(int x, int y, int i, int k, int kind, int n) const {

@@ -16,7 +16,8 @@ struct Workspace {
   int count = 0, capacity = 0, species_count = 0;
   Lookup lookup;
   Buffer<std::uint32_t> now, next;  ///< columns of View; `now` is sorted by key
-  Buffer<Span> spans;               ///< of the look-up's cells, then of its levels
+  Buffer<Neighbour> neighbours;     ///< the plants of `now`
+  Buffer<std::int32_t> begins;      ///< of the look-up's cells, and one more
   SortWorkspace sort_workspace;
   Buffer<SpeciesTraits> species;
   Buffer<float> competition;         ///< matrix D_kj: [affected species k][other species j]
@@ -30,7 +31,7 @@ struct Workspace {
   explicit operator bool() const { return static_cast<bool>(now); }
   View plants() const { return {now.data(), capacity}; }
   View next_state() const { return {next.data(), capacity}; }
-  Neighbourhood neighbourhood() const { return {lookup, spans.data()}; }
+  Neighbourhood neighbourhood() const { return {lookup, begins.data(), neighbours.data()}; }
   std::size_t bytes() const;
 };
 

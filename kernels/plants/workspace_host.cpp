@@ -12,8 +12,9 @@ Workspace make_workspace(Exec& exec, const Grid& grid, int capacity, float large
   work.lookup = Lookup(grid, largest_plant);
   for (Buffer<std::uint32_t>* columns : {&work.now, &work.next})
     *columns = Buffer<std::uint32_t>(exec, column_count * room);
-  work.spans = Buffer<Span>(exec, static_cast<std::size_t>(work.lookup.cells + Lookup::levels));
-  work.spans.set_zero();
+  work.neighbours = Buffer<Neighbour>(exec, room);
+  work.begins = Buffer<std::int32_t>(exec, static_cast<std::size_t>(work.lookup.cells) + 1);
+  work.begins.set_zero();
   work.sort_workspace = SortWorkspace(exec, capacity, grid.cells() + 1);
   work.granted_water = Buffer<Quanta>(exec, room);
   work.water_requests = Buffer<long long>(exec, cells);
@@ -46,9 +47,9 @@ void set_species(Exec& exec, Workspace& work, const std::vector<SpeciesTraits>& 
 }
 
 std::size_t Workspace::bytes() const {
-  return now.bytes() + next.bytes() + spans.bytes() + sort_workspace.bytes() + species.bytes() +
-         competition.bytes() + granted_water.bytes() + water_requests.bytes() + density.bytes() +
-         downwind.bytes() + seeds.bytes() + seed_offsets.bytes() + event_counts.bytes() +
+  return now.bytes() + next.bytes() + neighbours.bytes() + begins.bytes() + sort_workspace.bytes() +
+         species.bytes() + competition.bytes() + granted_water.bytes() + water_requests.bytes() +
+         density.bytes() + downwind.bytes() + seeds.bytes() + seed_offsets.bytes() + event_counts.bytes() +
          tops.cell_heights.bytes() + tops.highest.bytes();
 }
 

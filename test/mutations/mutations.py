@@ -792,7 +792,7 @@ MUTATIONS = [Mutation(*row) for row in (
      "sum += 0.5f * row[plants.species[j]] * (overlap * overlap);",
      "two equal plants at one place leave each other nothing", "kernels_analytic *PlantTheory.Competition*"),
     ("plant_seam", "kernels/plants/lookup.hpp",
-     "return d > 0.5f * length ? d - length : (d < -0.5f * length ? d + length : d);", "return d;",
+     "return fabsf(d) > half ? d - copysignf(length, d) : d;", "return d;",
      "plants see each other over the seam of a torus", "kernels_unit *Plant*"),
     ("one_seed_a_step", "kernels/plants/spawning.hpp",
      "return q > 0.0 ? static_cast<int>(q * dt + u) : 0;", "return q > 0.0 && q * dt + u >= 1.0 ? 1 : 0;",

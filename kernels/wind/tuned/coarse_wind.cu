@@ -203,12 +203,6 @@ __device__ void store(const Block& b, int stage, int n, int other) {
   }
 }
 
-#if !defined(__CUDA_ARCH__) || __CUDA_ARCH__ >= 700
-#define DESERT_GRID_CONSTANT __grid_constant__
-#else  // older architectures do not know it, and never run the kernel
-#define DESERT_GRID_CONSTANT
-#endif
-
 __global__ void __launch_bounds__(threads, 1) coarse_wind_kernel(DESERT_GRID_CONSTANT const Arguments s) {
   Block b(s);
   const bool has_responses = s.responses() > 0, has_projection = s.laws.projected;
