@@ -178,11 +178,8 @@ void relax_until_converged(E& exec, const LevelView& fine, const AvalanchingPara
 
 template <class E>
 void sweep(E& exec, const LevelView& level, float transfer, bool by_tangent, Workspace& work) {
-  for_each_cell(exec, level.grid,
-                Release<LevelView>{level, transfer, by_tangent, work.share.data(), work.given.data()});
-  for_each_cell(
-      exec, level.grid,
-      Gather<LevelView>{level, by_tangent, work.share.data(), work.given.data(), work.received.data()});
+  give_and_receive(exec, level, transfer, by_tangent, work.share.data(), work.given.data(),
+                   work.received.data());
   for_each_cell(exec, level.grid,
                 ApplySweep{level.grid, work.given.data(), work.received.data(), level.sand});
 }

@@ -221,8 +221,9 @@ struct Prolong {
 
 /// First half of a synchronous sweep over the whole grid: the share of its excesses that each cell releases,
 /// and the sum of what it gives. `by_tangent` selects the distribution of Taylor & Keyser: k_c of the largest
-/// drop, in proportion to the tangents. `Level` is LevelView or a type with the same interface.
-template <class Level>
+/// drop, in proportion to the tangents. `Level` is LevelView or a type with the same interface; `inside`: no
+/// neighbour lies over an edge.
+template <class Level, bool inside>
 struct Release {
   Level level;
   float transfer;
@@ -246,23 +247,24 @@ struct Release {
     const float drop = level.repose[i] * level.quanta_per_cell;
     float w[8], deepest = 0.0f;
     for (int k = 0; k < 8; ++k) {
-      const int j = neighbour_index(g, x + Neighbours::dx(k), y + Neighbours::dy(k));
+      const int j = neighbour<inside>(g, x, y, k);
       w[k] = j >= 0 ? weight(by_tangent, h, level.height(j), drop, k) : 0.0f;
       if (w[k] > 0.0f) deepest = maximum(deepest, static_cast<float>(h - level.height(j)));
     }
+    if (!(deepest > 0.0f)) return;
     const float available = static_cast<float>(level.sand[i]);
     const float part =
         by_tangent ? minimum(transfer * deepest, available) / (Neighbours::sum(w) + 1e-20f) * rounding_guard
                    : release_share(w, transfer, available);
     Quanta total = 0;
     for (int k = 0; k < 8; ++k) total += static_cast<Quanta>(part * w[k]);
-    share[i] = part;
+    share[i] = total > 0 ? part : 0.0f;
     given[i] = total;
   }
 };
 
 /// Second half: the sum of what each cell receives from its neighbours.
-template <class Level>
+template <class Level, bool inside>
 struct Gather {
   Level level;
   bool by_tangent;
@@ -276,15 +278,34 @@ struct Gather {
     const Quanta h = level.height(i);
     Quanta sum = 0;
     for (int k = 0; k < 8; ++k) {
-      const int j = neighbour_index(g, x + Neighbours::dx(k), y + Neighbours::dy(k));
+      const int j = neighbour<inside>(g, x, y, k);
       if (j < 0 || share[j] <= 0.0f) continue;
-      sum +=
-          static_cast<Quanta>(share[j] * Release<Level>::weight(by_tangent, level.height(j), h,
-                                                                level.repose[j] * level.quanta_per_cell, k));
+      const float drop = level.repose[j] * level.quanta_per_cell;
+      sum += static_cast<Quanta>(share[j] *
+                                 Release<Level, inside>::weight(by_tangent, level.height(j), h, drop, k));
     }
     received[i] = sum;
   }
 };
+
+/// Both halves: what each cell gives, and what it receives.
+template <class E, class Level>
+void give_and_receive(E& exec, const Level& level, float transfer, bool by_tangent, float* share,
+                      Quanta* given, Quanta* received) {
+  constexpr int reach = 1;
+  for_each_cell(
+      exec, level.grid,
+      Bordered<Release<Level, true>, Release<Level, false>>{level.grid,
+                                                            reach,
+                                                            {level, transfer, by_tangent, share, given},
+                                                            {level, transfer, by_tangent, share, given}});
+  for_each_cell(
+      exec, level.grid,
+      Bordered<Gather<Level, true>, Gather<Level, false>>{level.grid,
+                                                          reach,
+                                                          {level, by_tangent, share, given, received},
+                                                          {level, by_tangent, share, given, received}});
+}
 
 struct ApplySweep {
   Grid grid;

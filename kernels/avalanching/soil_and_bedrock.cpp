@@ -84,9 +84,7 @@ void step_soil(E& exec, const TerrainView& t, const AvalanchingParameters& p, co
                         {tangents.soil, tangents.soil_vegetated, t.real(Layer::vegetation),
                          repose::RelativeMoisture(t, repose), tangents.moisture_factor},
                         t.grid.cell_size * t.quanta_per_metre};
-  for_each_cell(exec, t.grid, Release<SoilLevel>{level, p.transfer, false, work.share.data(), given});
-  for_each_cell(exec, t.grid,
-                Gather<SoilLevel>{level, false, work.share.data(), given, work.received.data()});
+  give_and_receive(exec, level, p.transfer, false, work.share.data(), given, work.received.data());
   for_each_cell(exec, t.grid, ApplySweep{t.grid, given, work.received.data(), t.quanta(Layer::soil)});
 }
 
@@ -98,9 +96,7 @@ void step_bedrock(E& exec, const TerrainView& t, const AvalanchingParameters& p,
                         t.real(Layer::obstacle),
                         {repose::Tangents(repose).bedrock},
                         t.grid.cell_size * t.quanta_per_metre};
-  for_each_cell(exec, t.grid, Release<RockLevel>{level, p.transfer, false, work.share.data(), given});
-  for_each_cell(exec, t.grid,
-                Gather<RockLevel>{level, false, work.share.data(), given, work.received.data()});
+  give_and_receive(exec, level, p.transfer, false, work.share.data(), given, work.received.data());
   for_each_cell(exec, t.grid,
                 ApplyRockfall{t.grid, given, work.received.data(), p.bedrock_to_sand,
                               t.quanta(Layer::bedrock), t.quanta(Layer::sand), ledger});

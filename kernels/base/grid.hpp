@@ -76,4 +76,11 @@ struct Neighbours {
   }
 };
 
+/// Index of the kth neighbour of a cell, or −1 beyond an open edge; `inside`: none lies over an edge.
+template <bool inside>
+DESERT_HD int neighbour(const Grid& g, int x, int y, int k) {
+  const int at_x = x + Neighbours::dx(k), at_y = y + Neighbours::dy(k);
+  return inside ? g.index(at_x, at_y) : neighbour_index(g, at_x, at_y);
+}
+
 }  // namespace desert_sim
