@@ -11,10 +11,10 @@ namespace desert_sim {
 
 using TopicList = std::vector<std::unique_ptr<Topic>>;
 
-// Each is defined in the file of its name: add_wind_topic() in wind_topic.cpp.
+// Each is defined in the file of its name: add_wind_topics() in wind_topic.cpp.
 void add_elevation_topics(const TopicContext& context, TopicList& topics);  // in layer_topics.cpp
 void add_layer_topics(const TopicContext& context, TopicList& topics);
-void add_wind_topic(const TopicContext& context, TopicList& topics);
+void add_wind_topics(const TopicContext& context, TopicList& topics);
 void add_wind_features_topic(const TopicContext& context, TopicList& topics);
 void add_wind_markers_topic(const TopicContext& context, TopicList& topics);
 void add_points_topics(const TopicContext& context, TopicList& topics);
@@ -33,7 +33,7 @@ inline TopicList make_topics(const TopicContext& context) {
   add_elevation_topics(context, topics);      // ~elevation_updates, ~elevation
   add_layer_topics(context, topics);          // ~layers/<name>_updates, ~layers/<name>
   add_micro_relief_topic(context, topics);    // ~micro_relief
-  add_wind_topic(context, topics);            // ~wind
+  add_wind_topics(context, topics);           // ~wind, ~wind_array
   add_wind_features_topic(context, topics);   // ~wind_features
   add_wind_markers_topic(context, topics);    // ~wind_markers
   add_points_topics(context, topics);         // ~points, ~water_points

@@ -1,6 +1,8 @@
-/// ~wind: the wind at the surface, averaged over blocks of cells.
+/// ~wind: the wind at the surface, averaged over blocks of cells; ~wind_array: the same in a message that
+/// bridges and viewers know.
 
 #include <desert_sim/WindField.h>
+#include <std_msgs/Float32MultiArray.h>
 
 #include <algorithm>
 #include <boost/make_shared.hpp>
@@ -49,22 +51,48 @@ WindFieldPtr wind_message(const TerrainState& state, const std::string& frame, i
   return message;
 }
 
-class WindTopic : public MessageTopic<WindField> {
+/// 2 × height × width values [m/s]: eastward parts, then northward ones.
+std_msgs::Float32MultiArrayPtr wind_array(const WindField& wind) {
+  const auto array = boost::make_shared<std_msgs::Float32MultiArray>();
+  const auto dimension = [&](const char* label, std::uint32_t size, std::uint32_t stride) {
+    std_msgs::MultiArrayDimension axis;
+    axis.label = label;
+    axis.size = size;
+    axis.stride = stride;
+    array->layout.dim.push_back(axis);
+  };
+  const std::uint32_t cells = wind.height * wind.width;
+  dimension("u, v", 2, 2 * cells);
+  dimension("y", wind.height, cells);
+  dimension("x", wind.width, wind.width);
+  array->data.reserve(2 * std::size_t{cells});
+  array->data.insert(array->data.end(), wind.u.begin(), wind.u.end());
+  array->data.insert(array->data.end(), wind.v.begin(), wind.v.end());
+  return array;
+}
+
+template <class Message>
+class WindTopic : public MessageTopic<Message> {
  public:
-  explicit WindTopic(const TopicContext& context) : MessageTopic(context, "wind") {}
-  double rate() const override { return parameters().topics.wind_rate; }
+  WindTopic(const TopicContext& context, const std::string& name) : MessageTopic<Message>(context, name) {}
+  double rate() const override { return this->parameters().topics.wind_rate; }
   std::vector<Layer> layers() const override { return {Layer::wind_x, Layer::wind_y}; }
 
   bool publish(const TerrainState& state) override {
-    publisher_.publish(wind_message(state, frame(), parameters().topics.wind_decimation));
+    const WindFieldPtr wind = wind_message(state, this->frame(), this->parameters().topics.wind_decimation);
+    if constexpr (std::is_same_v<Message, WindField>)
+      this->publisher_.publish(wind);
+    else
+      this->publisher_.publish(wind_array(*wind));
     return true;
   }
 };
 
 }  // namespace
 
-void add_wind_topic(const TopicContext& context, TopicList& topics) {
-  topics.push_back(std::make_unique<WindTopic>(context));
+void add_wind_topics(const TopicContext& context, TopicList& topics) {
+  topics.push_back(std::make_unique<WindTopic<WindField>>(context, "wind"));
+  topics.push_back(std::make_unique<WindTopic<std_msgs::Float32MultiArray>>(context, "wind_array"));
 }
 
 }  // namespace desert_sim
