@@ -19,13 +19,14 @@ RULES = os.path.join(HERE, "rosdep_rules.yaml")
 WITHOUT_RULE = {"librandom123-dev", "libcli11-dev"}
 # A package of ROS there, of Debian here: the same library.
 OF_ROS = {"libompl-dev": "ompl"}
-# rosdep knows libopencv-dev alone, which brings these.
-OF_OPENCV = {"libopencv-core-dev", "libopencv-imgproc-dev", "libopencv-imgcodecs-dev"}
+# What packages bring that rosdep knows in place of these.
+BROUGHT = {"libopencv-dev": {"libopencv-core-dev", "libopencv-imgproc-dev", "libopencv-imgcodecs-dev"},
+           "google-mock": {"libgmock-dev"}}
 # Of dependencies.txt, what a workspace has already, or only tests, checks and other tools of ours use.
 OF_EVERY_WORKSPACE = {"g++", "make", "ninja-build", "cmake", "pkg-config"}
 OF_TESTS = {"python3-netcdf4", "python3-xarray", "snakemake", "munge", "slurmctld", "slurmd", "slurm-client", "xvfb",
             "libgl1-mesa-dri", "shellcheck", "flake8", "catkin-lint", "python3-catkin-pkg", "clang", "llvm", "libomp-dev",
-            "stress-ng", "qtbase5-dev", "qt6-base-dev", "libopengl-dev", "libgmock-dev",
+            "stress-ng", "qtbase5-dev", "qt6-base-dev", "libopengl-dev",
             "ros-noetic-grid-map-visualization", "ros-noetic-grid-map-filters"}
 
 
@@ -96,7 +97,7 @@ class PackageXml(unittest.TestCase):
 
     def installed(self, system):
         found = {package for key in keys() for package in self.rules[key].get("noetic") or self.rules[key][system]}
-        found |= OF_OPENCV if "libopencv-dev" in found else set()
+        found = found.union(*(brought for package, brought in BROUGHT.items() if package in found))
         return found | {package for package, key in OF_ROS.items() if key in keys()}
 
     def test_rosdep_installs_what_the_build_needs_on_noetic(self):
